@@ -171,25 +171,6 @@ class Odometry(IdlStruct, typename="nav_msgs::msg::dds_::Odometry_"):
     twist: TwistWithCovariance
 
 
-@dataclass
-class MultiArrayDimension(IdlStruct, typename="std_msgs::msg::dds_::MultiArrayDimension_"):
-    label: str
-    size: uint32
-    stride: uint32
-
-
-@dataclass
-class MultiArrayLayout(IdlStruct, typename="std_msgs::msg::dds_::MultiArrayLayout_"):
-    dim: sequence[MultiArrayDimension]
-    data_offset: uint32
-
-
-@dataclass
-class UInt32MultiArray(IdlStruct, typename="std_msgs::msg::dds_::UInt32MultiArray_"):
-    layout: MultiArrayLayout
-    data: sequence[uint32]
-
-
 RELIABLE = Qos(
     Policy.Reliability.Reliable(duration(seconds=1)),
     Policy.History.KeepAll,

@@ -31,14 +31,9 @@ from dds import (
     NODE,
     OK,
     PATIENCE_S,
-    RELIABLE,
     WARN,
     DiagnosticArray,
-    Header,
-    MultiArrayLayout,
     Range,
-    Time,
-    UInt32MultiArray,
     environment,
     reader,
     taken,
@@ -46,7 +41,6 @@ from dds import (
 )
 from fast_dds import FastDds
 from cyclonedds.domain import DomainParticipant
-from cyclonedds.pub import DataWriter
 from cyclonedds.topic import Topic
 from pymavlink import mavutil
 
@@ -378,67 +372,6 @@ def test_a_late_board_and_a_missing_sensor_are_named(
         # The sector that the sensor looks into; what does not answer is an obstacle at the minimum.
         sector = (-45 * FAULTY % 360 + 20) % 360 // 5
         assert pictures[-1].distances[sector] == 2
-
-
-def too_close_until_heard(node, write):
-    """Writes that the last sensor sees something too close until the node says so: then it has discovered the writer."""
-
-    def heard():
-        write()
-        node.take()
-        return node.ranges[-1]
-
-    node.until("discovery of the topic", heard)
-
-
-def after_too_close(node, awaited):
-    """Output of the node after that, when it has said this many ranges of each sensor."""
-
-    def ranges():
-        node.take()
-        rest = [[message.range for message in heard] for heard in node.ranges]
-        while rest[-1][:1] == [-math.inf]:
-            rest[-1].pop(0)
-        return rest
-
-    node.until(f"{awaited} ranges", lambda: [len(said) for said in ranges()] == awaited)
-    node.end()
-    return ranges()
-
-
-def test_raw_echo_times_on_a_topic_are_filtered(tmp_path, participant, processes):
-    file = parameters(tmp_path, source="echo_times", sensors=2)
-    node = Node(participant, processes, "--params-file", file, sensors=2)
-    writer = DataWriter(participant, Topic(participant, "rt/echo_times", UInt32MultiArray, qos=RELIABLE), qos=RELIABLE)
-    write = lambda *rows: writer.write(UInt32MultiArray(MultiArrayLayout([], 0), sum(rows, [])))
-    too_close_until_heard(node, lambda: write([1, 0, 0, 0, 90]))
-    none = 2**32 - 1
-    echoes = [(10_000, 9_000), (10_200, none), (14_000, none), (14_400, none), (none, 12_000), (none, 12_100)]
-    for period, pair in enumerate(echoes):
-        write(*([sensor, 100_000 * period, period, period % 2, echo] for sensor, echo in enumerate(pair)))
-    left, right = after_too_close(node, [3, 3])
-    assert left == pytest.approx([1.7503, 2.471, math.inf], abs=0.002)
-    assert right == pytest.approx([math.inf, math.inf, 2.0764], abs=0.002)
-
-
-def test_ranges_on_topics_are_filtered(tmp_path, participant, processes):
-    given = {"source": "ranges", "sensors": 2, "range_topics": "[raw/left, raw/right]"}
-    node = Node(participant, processes, "--params-file", parameters(tmp_path, **given), sensors=2)
-    topics = [Topic(participant, f"rt/raw/{side}", Range, qos=RELIABLE) for side in ("left", "right")]
-    writers = [DataWriter(participant, topic, qos=RELIABLE) for topic in topics]
-    message = lambda metres: Range(Header(Time(0, 0), "sonar"), 0, 0.5, 0.02, 4.0, metres, 0.0)
-    too_close_until_heard(node, lambda: writers[1].write(message(-math.inf)))
-    node.until("discovery of the other topic", lambda: writers[0].write(message(5.0)) or node.take() or node.ranges[0])
-    for pair in [(1.0, math.inf), (1.01, math.inf), (2.0, math.inf), (3.0, 2.0), (3.05, 2.0)]:
-        for writer, metres in zip(writers, pair):
-            writer.write(message(metres))
-    last = lambda: node.take() or (node.ranges[0][-1].range > 3 and node.ranges[0][-1].range < 4)
-    node.until("the last range", last)
-    left, right = after_too_close(node, [len(node.ranges[0]), 3])
-    # What was clear until the topic was discovered.
-    left = [metres for metres in left if metres < math.inf]
-    assert left == pytest.approx([1.01, 3.05], abs=0.001)
-    assert right == pytest.approx([math.inf, math.inf, 2.0], abs=0.001)
 
 
 @pytest.mark.parametrize(

@@ -117,8 +117,5 @@ pub(crate) fn task() -> Result<Task, String> {
     let gpio = (parameters.source == Source::Gpio)
         .then(|| GpioRing::design(&parameters.ring, &parameters.method))
         .transpose()?;
-    if cli.no_ros && matches!(parameters.source, Source::EchoTimes | Source::Ranges) {
-        return Err("without ROS there are no topics to listen to; give --port, --gpio or --simulate".to_owned());
-    }
     Ok(Task::Run(Box::new(Setup { parameters, placing, world, gpio, ros: (!cli.no_ros).then_some(ros) })))
 }

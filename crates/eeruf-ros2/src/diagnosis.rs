@@ -94,7 +94,7 @@ impl Diagnosis {
             line: match parameters.source {
                 Source::Serial => Some("serial line"),
                 Source::Gpio => Some("GPIO lines"),
-                Source::EchoTimes | Source::Ranges | Source::Simulation => None,
+                Source::Simulation => None,
             },
             late_us: parameters.late_us,
             blind_after: parameters.blind_after,

@@ -14,10 +14,6 @@ pub(crate) enum Source {
     /// A board on a serial line, which filters.
     #[default]
     Serial,
-    /// Raw echo times on a topic, to be filtered here.
-    EchoTimes,
-    /// Ranges on a topic for each sensor, to be filtered here.
-    Ranges,
     /// HC-SR04 modules on this machine's own pins.
     Gpio,
     /// No hardware: the first robot of a scene file.
@@ -70,18 +66,12 @@ macro_rules! parameters {
 }
 
 parameters! {
-    /// The source of readings: serial (a board), echo_times or ranges (topics, filtered here), gpio or simulation.
+    /// The source of readings: serial (a board), gpio or simulation.
     source: Source = Source::Serial, "serial";
     /// The board's serial line.
     port: String = "/dev/ttyACM0".to_owned(), "/dev/ttyACM0";
     /// The speed; without effect on USB.
     baud: u32 = 115_200, "115200";
-    /// For source echo_times: the topic with rows of raw echo times.
-    echo_times_topic: String = "echo_times".to_owned(), "echo_times";
-    /// For source ranges: the topic of each sensor.
-    range_topics: Vec<String> = Vec::new(), "[]";
-    /// For echo_times and ranges: the greatest difference between near-identical echo times.
-    t_delta_us: u32 = 500, "500";
     /// For gpio: the chip, and its line for the trigger and for the echo of each sensor; the ring file says the rest.
     gpio_chip: String = "/dev/gpiochip0".to_owned(), "/dev/gpiochip0";
     /// On a Raspberry Pi the numbers after GPIO, not those of the header.
@@ -288,12 +278,8 @@ impl Parameters {
         let must = |holds: bool, wrong: String| if holds { Ok(()) } else { Err(wrong) };
         let sensors = usize::from(self.sensors);
         must((1..=MAX_SENSORS).contains(&sensors), format!("sensors: {sensors}; expected 1 to {MAX_SENSORS}"))?;
-        let lists = [
-            ("topics", self.topics.len()),
-            ("frame_ids", self.frame_ids.len()),
-            ("range_topics", self.range_topics.len()),
-            ("yaws_deg", self.yaws_deg.len()),
-        ];
+        let lists =
+            [("topics", self.topics.len()), ("frame_ids", self.frame_ids.len()), ("yaws_deg", self.yaws_deg.len())];
         for (list, length) in lists {
             let whole = length == 0 || length == sensors;
             must(whole, format!("{list}: {length} entries; expected one for each of {sensors} sensors, or none"))?;
@@ -309,8 +295,6 @@ impl Parameters {
             let line = twice.unwrap_or_default();
             must(twice.is_none(), format!("trigger_lines and echo_lines: {line} twice; expected a line for each pin"))?;
         }
-        let ranges_named = self.source != Source::Ranges || !self.range_topics.is_empty();
-        must(ranges_named, "range_topics: none; source: ranges needs one for each sensor".to_owned())?;
         let (least, most) = (self.min_range_m, self.max_range_m);
         must(least >= 0.0 && least.is_finite(), format!("min_range_m: {least}; expected 0 or more"))?;
         must(most > least && most <= 100.0, format!("max_range_m: {most}; expected more than {least}, up to 100"))?;
@@ -318,16 +302,11 @@ impl Parameters {
         must(view > 0.0 && view <= 6.3, format!("field_of_view_rad: {view}; expected more than 0, up to 6.3"))?;
         let celsius = self.temperature_c;
         must((-60.0..=80.0).contains(&celsius), format!("temperature_c: {celsius}; expected -60 to 80"))?;
-        let most_t_delta = 65_535;
-        let t_delta = self.t_delta_us;
-        must(t_delta <= most_t_delta, format!("t_delta_us: {t_delta}; expected 0 to {most_t_delta}"))?;
         let silent = self.silent_after_s;
         must(silent > 0.0 && silent.is_finite(), format!("silent_after_s: {silent}; expected more than 0"))?;
         must(self.blind_after > 0, "blind_after: 0; expected 1 or more".to_owned())?;
         let yaw = self.yaws_deg.iter().find(|yaw| !yaw.is_finite());
         must(yaw.is_none(), format!("yaws_deg: {}; expected degrees", yaw.unwrap_or(&0.0)))?;
-        let logged = self.log.as_os_str().is_empty() || self.source != Source::Ranges;
-        must(logged, "log: ranges come without the instants of their firings, of which a log is made".to_owned())?;
         must(self.height_m.is_finite(), format!("height_m: {}; expected metres", self.height_m))?;
         let sim_time = "use_sim_time: true; expected false: stamps are by this machine's clock".to_owned();
         must(!self.use_sim_time, sim_time)
@@ -365,14 +344,14 @@ mod tests {
     #[test]
     fn node_finds_its_parameters_among_others() {
         let text = "nav2:\n  ros__parameters: {rate: [1, {a: b}]}\n/**:\n  ros__parameters: {sensors: 3, baud: 9600}\n\
-                    /eeruf:\n  ros__parameters: {sensors: 12, t_delta_us: 300}\n\
+                    /eeruf:\n  ros__parameters: {sensors: 12, late_us: 300}\n\
                     robot_1:\n  eeruf:\n    ros__parameters: {sensors: 24}\nrobot_2: {bare: }\n\
                     /*/left:\n  ros__parameters: {sensors: 5}\n";
-        let said = |node| read(text, node).map(|read| (read.sensors, read.baud, read.t_delta_us)).unwrap();
+        let said = |node| read(text, node).map(|read| (read.sensors, read.baud, read.late_us)).unwrap();
         assert_eq!(said("/eeruf"), (12, 9600, 300));
-        assert_eq!(said("/other"), (3, 9600, 500));
-        assert_eq!(said("/robot_1/eeruf"), (24, 9600, 500));
-        assert_eq!(said("/robot_2/eeruf"), (3, 9600, 500));
+        assert_eq!(said("/other"), (3, 9600, 2000));
+        assert_eq!(said("/robot_1/eeruf"), (24, 9600, 2000));
+        assert_eq!(said("/robot_2/eeruf"), (3, 9600, 2000));
         assert_eq!((said("/robot_2/left").0, said("/left").0, said("/a/b/left").0), (5, 3, 3));
         assert_eq!(read("eeruf:\n  ros__parameters:\n", "/eeruf").unwrap(), Parameters::default());
         let none = read("nav2:\n  ros__parameters: {}\n", "/eeruf").unwrap_err();
@@ -403,11 +382,10 @@ mod tests {
             ("sensors: 65", "sensors: 65; expected 1 to 64"),
             ("method: [flow]", "method"),
             ("topics: [a, b]", "topics: 2 entries; expected one for each of 8 sensors, or none"),
-            ("source: ranges", "range_topics: none"),
+            ("source: ranges", "unknown variant"),
             ("max_range_m: 0.01", "max_range_m: 0.01; expected more than 0.02, up to 100"),
             ("field_of_view_rad: 0", "field_of_view_rad: 0; expected more than 0"),
             ("temperature_c: 293", "temperature_c: 293; expected -60 to 80"),
-            ("t_delta_us: 70000", "t_delta_us: 70000; expected 0 to 65535"),
             ("blind_after: 0", "blind_after: 0; expected 1 or more"),
             ("source: gpio", "trigger_lines: 0 lines; expected one for each of 8 sensors"),
             (

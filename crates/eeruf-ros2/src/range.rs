@@ -39,11 +39,6 @@ impl Scale {
         f64::from(t_echo.as_micros()) * 1e-6 * self.sound_m_s / 2.0
     }
 
-    /// The echo time at this distance.
-    pub(crate) fn echo_time(&self, metres: f32) -> Micros {
-        Micros::new((f64::from(metres) * 2e6 / self.sound_m_s).round() as u32)
-    }
-
     /// Meaning of a reading; `None` for one without any: rejected, ambiguous, unanswered, or not yet confirmed.
     pub(crate) fn distance(&self, kind: ReadingKind, t_echo: Option<Micros>) -> Option<Distance> {
         match (kind, t_echo) {
@@ -99,14 +94,6 @@ mod tests {
             (ReadingKind::Unanswered, None, None),
         ] {
             assert_eq!(scale.distance(kind, t_echo).map(Distance::number), expected, "{kind}");
-        }
-    }
-
-    #[test]
-    fn metres_become_the_echo_time_that_they_came_from() {
-        let scale = Scale::new(&Parameters::default());
-        for us in [0, 1, 999, 23_310] {
-            assert_eq!(scale.echo_time(scale.metres(Micros::new(us)) as f32), Micros::new(us));
         }
     }
 }

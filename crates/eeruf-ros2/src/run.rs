@@ -1,4 +1,4 @@
-//! The main loop: what comes in from the board or from topics goes out as ranges, diagnostics, `MAVLink` and a log.
+//! The main loop: what comes in from the board goes out as ranges, diagnostics, `MAVLink` and a log.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -6,19 +6,18 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 
 use eeruf_core::{Micros, ReadingKind};
-use eeruf_serial::{FiringMessage, Message, Received};
+use eeruf_serial::{Firing, Message, Received};
 
 use crate::board_clock::BoardClock;
 use crate::board_line::{FromLine, listen, nanoseconds};
 use crate::cli::Setup;
 use crate::diagnosis::{Diagnosis, Level};
-use crate::filter::{RangeFilter, Raw};
 use crate::firing_log::FiringLog;
 use crate::gpio::{GpioRing, Speeds};
 use crate::mavlink::Mavlink;
 use crate::parameters::{Parameters, Source};
-use crate::range::{Distance, Scale};
-use crate::ros::{Heard, Ros};
+use crate::range::Scale;
+use crate::ros::Ros;
 use crate::simulated::Simulator;
 use crate::view::View;
 
@@ -78,8 +77,6 @@ fn pins(_: GpioRing, _: &Parameters, _: Receiver<Speeds>) -> Result<Receiver<Fro
 fn source(parameters: &Parameters) -> String {
     match parameters.source {
         Source::Serial => format!("{} at {} baud", parameters.port, parameters.baud),
-        Source::EchoTimes => format!("topic {}", parameters.echo_times_topic),
-        Source::Ranges => format!("topics {}", parameters.range_topics.join(", ")),
         Source::Gpio => format!("the lines of {}", parameters.gpio_chip),
         Source::Simulation => format!("the simulation of {}", parameters.scene.display()),
     }
@@ -92,7 +89,6 @@ struct EerufNode {
     truth: Vec<(View, f32)>,
     mavlink: Option<Mavlink>,
     log: Option<FiringLog>,
-    filter: RangeFilter,
     /// Where a ring on pins learns how the robot moves.
     speeds: Option<Sender<Speeds>>,
     diagnosis: Diagnosis,
@@ -120,7 +116,6 @@ impl EerufNode {
             truth: vec![(View::Unknown, 0.0); usize::from(parameters.sensors)],
             mavlink: is_set(&parameters.mavlink).then(|| Mavlink::open(parameters)).transpose()?,
             log: (!log.is_empty()).then(|| FiringLog::create(&parameters.log)).transpose()?,
-            filter: RangeFilter::new(Micros::new(parameters.t_delta_us))?,
             speeds: None,
             diagnosis: Diagnosis::new(parameters, 0.0),
             scale: Scale::new(parameters),
@@ -142,9 +137,9 @@ impl EerufNode {
     fn look(&mut self, line: Option<&Receiver<FromLine>>) -> Result<(), String> {
         let Some(line) = line else {
             std::thread::sleep(LOOK);
-            return if self.simulator.is_some() { self.simulate() } else { self.look_at_topics() };
+            return self.simulate();
         };
-        self.look_at_topics()?;
+        self.hear_motion();
         match line.recv_timeout(10 * LOOK) {
             Ok(FromLine::Opened) => {
                 self.diagnosis.line_lost = None;
@@ -229,55 +224,22 @@ impl EerufNode {
         Ok(())
     }
 
-    fn look_at_topics(&mut self) -> Result<(), String> {
-        let mut heard = Vec::new();
-        if let Some(ros) = &self.ros {
-            ros.take(|message| heard.push(message));
-        }
-        for message in heard {
-            match message {
-                Ok(Heard::Firing { sensor, fired_us, period, phase, t_echo_us }) => {
-                    let t_echo = (t_echo_us != u32::MAX).then_some(Micros::new(t_echo_us));
-                    let kind = self.filter.push(sensor, t_echo.map_or(Raw::Nothing, |t_echo| self.raw(t_echo)))?;
-                    let fired = eeruf_core::Instant::from_micros(fired_us);
-                    let (late, age) = (Micros::ZERO, Micros::ZERO);
-                    let firing =
-                        FiringMessage { sensor, phase, kind, fired, period, t_echo, late, age, explained_by: None };
-                    // The stamp's clock is unknown; the message has just come.
-                    self.firing(&firing, nanoseconds())?;
-                }
-                Ok(Heard::Range { sensor, distance: Some(distance) }) => {
-                    let (raw, t_echo) = match distance {
-                        Distance::At(metres) => {
-                            let t_echo = self.scale.echo_time(metres);
-                            (Raw::Echo(t_echo), Some(t_echo))
-                        }
-                        Distance::Clear => (Raw::Nothing, None),
-                        Distance::TooClose => (Raw::TooEarly, None),
-                    };
-                    let kind = self.filter.push(sensor, raw)?;
-                    self.diagnosis.reading(self.now_s(), sensor, kind, t_echo, Micros::ZERO, None);
-                    self.publish(sensor, kind, t_echo, nanoseconds());
-                }
-                Ok(Heard::Range { distance: None, .. }) => {}
+    fn hear_motion(&mut self) {
+        let heard: Vec<_> = self.ros.iter().flat_map(Ros::take).collect();
+        for speeds in heard {
+            match speeds {
                 // A thread that has ended says why.
-                Ok(Heard::Speeds(speeds)) => _ = self.speeds.as_ref().map(|to| to.send(speeds)),
+                Ok(speeds) => _ = self.speeds.as_ref().map(|to| to.send(speeds)),
                 Err(why) => self.say_once(&why),
             }
         }
-        Ok(())
     }
 
-    /// An echo from closer than the minimum range is compared with nothing.
-    fn raw(&self, t_echo: Micros) -> Raw {
-        if self.scale.metres(t_echo) < f64::from(self.scale.min_m) { Raw::TooEarly } else { Raw::Echo(t_echo) }
-    }
-
-    fn firing(&mut self, firing: &FiringMessage, fired_ns: i64) -> Result<(), String> {
+    fn firing(&mut self, firing: &Firing, fired_ns: i64) -> Result<(), String> {
         if let Some(log) = &mut self.log {
             log.write(&self.clock_name, firing).map_err(|error| format!("log: {error}"))?;
         }
-        let FiringMessage { sensor, kind, t_echo, late, explained_by, .. } = *firing;
+        let Firing { sensor, kind, t_echo, late, explained_by, .. } = *firing;
         self.diagnosis.reading(self.now_s(), sensor, kind, t_echo, late, explained_by);
         self.publish(sensor, kind, t_echo, fired_ns);
         Ok(())

@@ -41,43 +41,6 @@ pub(crate) struct Range {
     pub(crate) variance: f32,
 }
 
-/// The part of `sensor_msgs/Range` that all ROS 2 have.
-#[derive(Clone, Debug, Deserialize)]
-pub(crate) struct RangeHeard {
-    #[expect(dead_code, reason = "it stands before what is needed")]
-    pub(super) header: Header,
-    #[expect(dead_code, reason = "it stands before what is needed")]
-    pub(super) radiation_type: u8,
-    #[expect(dead_code, reason = "it stands before what is needed")]
-    pub(super) field_of_view: f32,
-    pub(crate) min_range: f32,
-    pub(crate) max_range: f32,
-    pub(crate) range: f32,
-}
-
-/// `std_msgs/UInt32MultiArray`.
-#[derive(Clone, Debug, Deserialize)]
-pub(crate) struct UInt32MultiArray {
-    #[expect(dead_code, reason = "it stands before what is needed")]
-    layout: MultiArrayLayout,
-    pub(crate) data: Vec<u32>,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[expect(dead_code, reason = "it stands before what is needed")]
-struct MultiArrayLayout {
-    dim: Vec<MultiArrayDimension>,
-    data_offset: u32,
-}
-
-#[derive(Clone, Debug, Deserialize)]
-#[expect(dead_code, reason = "it stands before what is needed")]
-struct MultiArrayDimension {
-    label: String,
-    size: u32,
-    stride: u32,
-}
-
 /// `diagnostic_msgs/DiagnosticArray`.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct DiagnosticArray {

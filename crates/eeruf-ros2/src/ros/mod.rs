@@ -22,37 +22,16 @@ use crate::diagnosis::Status;
 use crate::gpio::Speeds;
 use crate::parameters::{Parameters, Source};
 use crate::placing::{Place, Placing};
-use crate::range::{Distance, Scale};
+use crate::range::Scale;
 use crate::ros_args::RosArgs;
 use crate::simulated::Course;
 use crate::view::View;
 use messages::{
     DiagnosticArray, DiagnosticStatus, Header, KeyValue, LaserScan, Odometry, PointCloud2, Quaternion, Range,
-    RangeHeard, TfMessage, Time, Transform, TransformStamped, Twist, UInt32MultiArray, ULTRASOUND, Vector3,
+    TfMessage, Time, Transform, TransformStamped, Twist, ULTRASOUND, Vector3,
 };
 
 use scene::Scene;
-
-/// A message on a topic.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Heard {
-    /// A row of raw echo times.
-    Firing { sensor: u8, fired_us: u32, period: u32, phase: u8, t_echo_us: u32 },
-    /// A range of a sensor: what it says of the world, or `None` if it is not a number.
-    Range { sensor: u8, distance: Option<Distance> },
-    /// The robot's motion.
-    Speeds(Speeds),
-}
-
-/// Number of numbers in a row of raw echo times.
-const ROW: usize = 5;
-
-enum Input {
-    None,
-    EchoTimes(Box<Subscription<UInt32MultiArray>>),
-    Ranges(Vec<Subscription<RangeHeard>>),
-    Odometry(Box<Subscription<Odometry>>),
-}
 
 /// Outputs that need the places of the sensors.
 struct Placed {
@@ -74,7 +53,8 @@ pub(crate) struct Ros {
     placed: Option<Placed>,
     /// None with hardware.
     scene: Option<Scene>,
-    input: Input,
+    /// The robot's motion, where a ring on pins listens for it.
+    odometry: Option<Subscription<Odometry>>,
     field_of_view: f32,
     min_range: f32,
     max_range: f32,
@@ -108,22 +88,9 @@ impl Ros {
             ranges.push(node.publisher(&name, ["sensor_msgs", "Range"], &PUBLISHING)?);
         }
         let diagnostics = node.publisher("/diagnostics", ["diagnostic_msgs", "DiagnosticArray"], &PUBLISHING)?;
-        let input = match parameters.source {
-            Source::Gpio if !parameters.odometry_topic.is_empty() => {
-                let odometry = ["nav_msgs", "Odometry"];
-                Input::Odometry(Box::new(node.subscription(&parameters.odometry_topic, odometry)?))
-            }
-            Source::Serial | Source::Gpio | Source::Simulation => Input::None,
-            Source::EchoTimes => {
-                let array = ["std_msgs", "UInt32MultiArray"];
-                Input::EchoTimes(Box::new(node.subscription(&parameters.echo_times_topic, array)?))
-            }
-            Source::Ranges => {
-                let names = parameters.range_topics.iter();
-                let subscriptions = names.map(|name| node.subscription(name, ["sensor_msgs", "Range"]));
-                Input::Ranges(subscriptions.collect::<Result<_, _>>()?)
-            }
-        };
+        let hears = parameters.source == Source::Gpio && !parameters.odometry_topic.is_empty();
+        let odometry = hears.then(|| node.subscription(&parameters.odometry_topic, ["nav_msgs", "Odometry"]));
+        let odometry = odometry.transpose()?;
         let frame_id = |sensor| Parameters::name_of(&parameters.frame_ids, "sonar_", sensor);
         let frame_ids: Vec<String> = (0..parameters.sensors).map(frame_id).collect();
         let placing = &setup.placing;
@@ -138,7 +105,7 @@ impl Ros {
             diagnostics,
             placed,
             scene,
-            input,
+            odometry,
             field_of_view: parameters.field_of_view_rad,
             min_range: parameters.min_range_m,
             max_range: parameters.max_range_m,
@@ -201,32 +168,12 @@ impl Ros {
         self.diagnostics.publish(DiagnosticArray { header, status: status.collect() }).is_ok()
     }
 
-    /// Hands on all that has been heard since; an error for a message that is not as it must be.
-    pub(crate) fn take(&self, mut each: impl FnMut(Result<Heard, String>)) {
-        match &self.input {
-            Input::None => {}
-            Input::EchoTimes(subscription) => {
-                while let Some(message) = subscription.take().transpose() {
-                    match message {
-                        Ok((message, _)) => rows(&message.data, self.ranges.len(), &mut each),
-                        Err(error) => each(Err(error.to_string())),
-                    }
-                }
-            }
-            Input::Odometry(subscription) => {
-                while let Some(message) = subscription.take().transpose() {
-                    each(message.map_err(|error| error.to_string()).and_then(|(message, _)| speeds(&message.twist.0)));
-                }
-            }
-            Input::Ranges(subscriptions) => {
-                for (sensor, subscription) in (0..).zip(subscriptions) {
-                    while let Some(message) = subscription.take().transpose() {
-                        let heard = message.map(|(message, _)| Heard::Range { sensor, distance: distance(&message) });
-                        each(heard.map_err(|error| error.to_string()));
-                    }
-                }
-            }
-        }
+    /// Hands on how the robot has moved since; an error for a message that is not as it must be.
+    pub(crate) fn take(&self) -> impl Iterator<Item = Result<Speeds, String>> {
+        self.odometry
+            .iter()
+            .flat_map(|odometry| std::iter::from_fn(|| odometry.take().transpose()))
+            .map(|message| message.map_err(|error| error.to_string()).and_then(|(message, _)| speeds(&message.twist.0)))
     }
 }
 
@@ -284,42 +231,11 @@ impl Topics<'_> {
 }
 
 /// The robot's speeds, rounded up; what is no number is none.
-fn speeds(twist: &Twist) -> Result<Heard, String> {
+fn speeds(twist: &Twist) -> Result<Speeds, String> {
     let speeds = [twist.linear.x.hypot(twist.linear.y), twist.angular.z.abs()];
     match speeds.iter().all(|speed| speed.is_finite()) {
-        true => Ok(Heard::Speeds(speeds.map(|speed| (1e3 * speed).ceil() as u32))),
+        true => Ok(speeds.map(|speed| (1e3 * speed).ceil() as u32)),
         false => Err(format!("odometry: {} m/s, {} rad/s; expected numbers", speeds[0], speeds[1])),
-    }
-}
-
-/// Meaning of a range, by REP 117.
-fn distance(message: &RangeHeard) -> Option<Distance> {
-    let RangeHeard { min_range, max_range, range, .. } = *message;
-    if range.is_nan() {
-        None
-    } else if range >= max_range {
-        Some(Distance::Clear)
-    } else if range < min_range {
-        Some(Distance::TooClose)
-    } else {
-        Some(Distance::At(range))
-    }
-}
-
-fn rows(data: &[u32], sensors: usize, each: &mut impl FnMut(Result<Heard, String>)) {
-    let (rows, rest) = data.as_chunks::<ROW>();
-    if !rest.is_empty() {
-        let length = data.len();
-        each(Err(format!("echo times: {length} numbers; expected rows of sensor, fired_us, period, phase, t_echo_us")));
-        return;
-    }
-    for &[sensor, fired_us, period, phase, t_echo_us] in rows {
-        let known = u8::try_from(sensor).ok().filter(|&sensor| usize::from(sensor) < sensors);
-        each(match (known, u8::try_from(phase)) {
-            (Some(sensor), Ok(phase)) => Ok(Heard::Firing { sensor, fired_us, period, phase, t_echo_us }),
-            (None, _) => Err(format!("echo times: sensor {sensor}; expected less than {sensors}")),
-            (_, Err(_)) => Err(format!("echo times: phase {phase}; expected 0 to 255")),
-        });
     }
 }
 
@@ -339,48 +255,14 @@ mod tests {
     use super::*;
 
     #[test]
-    fn rows_of_echo_times_are_read_and_wrong_ones_named() {
-        let read = |data: &[u32]| {
-            let mut heard = Vec::new();
-            rows(data, 8, &mut |row| heard.push(row));
-            heard
-        };
-        let row = |sensor, t_echo_us| Heard::Firing { sensor, fired_us: 15_000, period: 3, phase: 1, t_echo_us };
-        let data = [7, 15_000, 3, 1, 5_872, 0, 15_000, 3, 1, u32::MAX];
-        assert_eq!(read(&data), [Ok(row(7, 5_872)), Ok(row(0, u32::MAX))]);
-        assert_eq!(read(&data[..9]).len(), 1);
-        assert!(read(&data[..9])[0].as_ref().is_err_and(|error| error.starts_with("echo times: 9 numbers")));
-        let error = read(&[8, 0, 0, 0, 0]).pop().unwrap().unwrap_err();
-        assert_eq!(error, "echo times: sensor 8; expected less than 8");
-    }
-
-    #[test]
     fn speeds_of_odometry_are_rounded_up() {
         let twist = |x, y, z| {
             let [linear, angular] = [Vector3 { x, y, z: 0.0 }, Vector3 { z, ..Vector3::default() }];
             speeds(&Twist { linear, angular })
         };
-        assert_eq!(twist(-0.3, 0.4, -0.0101), Ok(Heard::Speeds([500, 11])));
-        assert_eq!(twist(1e30, 0.0, 0.0), Ok(Heard::Speeds([u32::MAX, 0])));
+        assert_eq!(twist(-0.3, 0.4, -0.0101), Ok([500, 11]));
+        assert_eq!(twist(1e30, 0.0, 0.0), Ok([u32::MAX, 0]));
         let error = twist(0.1, 0.0, f64::NAN).unwrap_err();
         assert_eq!(error, "odometry: 0.1 m/s, NaN rad/s; expected numbers");
-    }
-
-    #[test]
-    fn ranges_are_understood_by_rep_117() {
-        let heard = |range| {
-            distance(&RangeHeard {
-                header: Header::default(),
-                radiation_type: ULTRASOUND,
-                field_of_view: 0.5,
-                min_range: 0.02,
-                max_range: 4.0,
-                range,
-            })
-        };
-        assert_eq!(heard(1.5), Some(Distance::At(1.5)));
-        assert_eq!((heard(f32::INFINITY), heard(4.0)), (Some(Distance::Clear), Some(Distance::Clear)));
-        assert_eq!((heard(f32::NEG_INFINITY), heard(0.01)), (Some(Distance::TooClose), Some(Distance::TooClose)));
-        assert_eq!(heard(f32::NAN), None);
     }
 }

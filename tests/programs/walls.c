@@ -36,8 +36,7 @@ static void edges_until(uint32_t now) {
     for (uint8_t x = 0; x < EERUF_SENSORS; x++)
         while (pending[x] && (int32_t)(now - (pending[x] == 2 ? rises_us[x] : falls_us[x])) >= 0) {
             clock_us = pending[x] == 2 ? rises_us[x] : falls_us[x];
-            level[x] = pending[x] == 2;
-            pending[x]--;
+            level[x] = pending[x]-- == 2;
             sonar_edge(x, level[x]);
         }
     clock_us = now;
@@ -45,20 +44,18 @@ static void edges_until(uint32_t now) {
 
 int main(int count, char **words) {
     uint32_t random = 1, readings = 0, accepted = 0, wrong = 0;
-    uint8_t begun[EERUF_SENSORS] = {0};
-    const EerufStatus status = sonar_begin(7);
-    if (status != EERUF_OK) return printf("begin: status %d\n", status), 1;
+    uint32_t begun[EERUF_SENSORS] = {0};
+    if (sonar_begin(7) != EERUF_OK) return puts("wrong settings"), 1;
     sonar_moving(0, 0);
     if (count > 2) without_power = atoi(words[1]), open = atoi(words[2]);
 #ifdef EERUF_MAVLINK_H
     for (int byte; (byte = getchar()) != EOF;) sonar_heard((uint8_t)byte);
 #endif
-    for (uint32_t elapsed = 0; elapsed < 20000000u;) {
+    for (uint32_t elapsed = 0, step; elapsed < 20000000u; elapsed += step) {
         uint8_t sensor;
         EerufReading reading;
         random = random * 1664525u + 1013904223u;
-        const uint32_t step = 20u + (random >> 16) % 280u;
-        elapsed += step;
+        step = 20u + (random >> 16) % 280u;
         edges_until(clock_us + step);
 #ifdef EERUF_MAVLINK_H
         const uint8_t *bytes;
@@ -66,10 +63,7 @@ int main(int count, char **words) {
         fwrite(bytes, 1, size, stdout);
 #endif
         while (sonar_read(&sensor, &reading)) {
-            if (!begun[sensor]) {
-                begun[sensor] = 1;
-                continue;
-            }
+            if (!begun[sensor]++) continue;
             readings++;
             if (reading.kind != EERUF_READING_ACCEPTED) continue;
             accepted++;

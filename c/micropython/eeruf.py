@@ -1,40 +1,23 @@
-"""eeruf in MicroPython: rings of ultrasonic sensors that reject each other's sound (Borenstein and Koren, 1995).
+"""eeruf in MicroPython: rings of ultrasonic sensors that reject each other's sound (Borenstein and Koren, 1995). README.md shows how.
 
-    from eeruf import ACCEPTED, KIND, SENSOR, T_ECHO, Flow, HcSr04FlowRing
+Times are microseconds, sensors are counted from 0. `FlowRing` does, event by event, what the Rust crate eeruf-core does with a flow
+ring; it needs no hardware. Rules: docs/explanation/flow.md. Licence: MIT OR Apache-2.0."""
 
-    # Eight HC-SR04 modules that listen for 25 ms (4.3 m), each on one pin.
-    ring = HcSr04FlowRing(Flow(8, 25000), pins=[2, 3, 4, 5, 6, 7, 8, 9])
-    while True:
-        reading = ring.read()
-        if reading and reading[KIND] == ACCEPTED:
-            print(reading[SENSOR], reading[T_ECHO] * 1716 // 10000, "mm")
-
-Times are microseconds, sensors are counted from 0. `FlowRing` does, event by event, what the Rust crate eeruf-core does with
-a flow ring; it needs no hardware. Rules: docs/explanation/flow.md. Licence: MIT OR Apache-2.0."""
-
-NOBODY = 255
-NEVER = 0xFFFF  # the age of a sensor none of whose readings was ever accepted
+NOBODY, NEVER = 255, 0xFFFF  # never: the age of a sensor none of whose readings was ever accepted
 READING_NAMES = "first accepted rejected repeated no_echo clear too_early late stuck tentative ambiguous unanswered".split()
 FIRST, ACCEPTED, REJECTED, REPEATED, NO_ECHO, CLEAR, TOO_EARLY, LATE, STUCK, _, AMBIGUOUS, UNANSWERED = range(12)
-# What silence means: neither free space nor a fault, NO_ECHO however often; a fault, UNANSWERED; free space once repeated.
-NEVER_FREE, NEEDS_ANSWER, TRUSTED = range(3)
+NEVER_FREE, NEEDS_ANSWER, TRUSTED = range(3)  # silence: neither free space nor a fault; a fault, UNANSWERED; free space once repeated
 HISTORY = "history"  # explains an ambiguous reading if a firing that could have been heard is forgotten
-# What makes an echo accepted: each, while the robot moves and is alone, else as TWO_IN_A_ROW; each, with twice the least
-# quiet; two that no sound of the ring explains, or one that fits what is believed.
-BY_MOTION, EVERY_ECHO, TWO_IN_A_ROW = range(3)
+BY_MOTION, EVERY_ECHO, TWO_IN_A_ROW = range(3)  # by motion: every echo while the robot moves and is alone, else two in a row
 FIRE, READING, PERIOD = range(3)  # what an event is; then of a firing and a reading the sensor, and the phase, which is 0
-# Places in a reading, (READING, sensor, phase, period, kind, t_echo_us, previous_us, age, explained_by). Without echo a
-# time is None. `explained_by`: the sensor whose sound could be both echoes, or HISTORY; None unless ambiguous.
+# Places in a reading; a time without echo is None. `explained_by`: the sensor whose sound could be both echoes, or HISTORY.
 SENSOR, PHASE, KIND, T_ECHO, PREVIOUS, AGE, EXPLAINED_BY = 1, 2, 4, 5, 6, 7, 8
-# The state that each kind of reading shows, or why nothing is known.
 _SHOWS = "unsure obstacle rejected unsure unsure clear too_close unsure unanswered - ambiguous unanswered".split()
 _WHYS = ("no_firing", "unsure", "rejected", "ambiguous", "no_witness")
-_UNIT_US = 4  # of quiet
-_TOO_FAR_US = 1000  # a belief that has missed readings ends where a good one may have changed by more
-# For so long a word of the robot's motion holds, then its top speed; sound that is heard was sent no longer ago.
-_TOLD_US, _HEARD_US = 500000, 250000
+# The unit of quiet; by how much a belief that missed readings may change; how long a word of motion holds; how long sound is heard.
+_UNIT_US, _TOO_FAR_US, _TOLD_US, _HEARD_US = 4, 1000, 500000, 250000
 _SILENCE = 1 << 29  # the echo time of silence with a witness: later than all, near none
-# A sensor has shown of its firing that it listened; nothing; that its line is high, whose fall makes silence count; that it was.
+# It has shown of its firing that it listened; nothing; that its line is high, whose fall makes silence count; that it was before.
 _LISTENED, _NOTHING, _HELD, _STUCK = range(4)
 _MOST_OFF_US, _WIDE = 300, 510  # the most that an echo may be off, and what stands for more
 
@@ -53,13 +36,11 @@ def _seed_of_chip():
     return max(seed, 1)
 
 
-def _rate(speed_mm_s):
-    # By how much a good reading may change, in 1/16 us per 1,024 us: 2 v / c at 331 m/s and 6 % more.
+def _rate(speed_mm_s):  # by how much a good reading may change, in 1/16 us per 1,024 us: 2 v / c at 331 m/s and 6 % more
     return (min(speed_mm_s, 39000) * 6881 + 65535) >> 16
 
 
-def _in_order(sensors):
-    # Far ones in turn: neighbours hear each other loudest.
+def _in_order(sensors):  # far ones in turn: neighbours hear each other loudest
     if sensors == 6:
         return b"\x00\x02\x04\x01\x05\x03"
     stride = 3 if sensors > 4 else 1
@@ -69,10 +50,7 @@ def _in_order(sensors):
 
 
 class Flow:
-    """Settings of a ring of sensors that listen for `window_us` after their firing and are deaf for `blanking_us`. README.md has
-    them all in a table. `least_us`, `most_us`: least and most quiet around a firing, by the window if None; the most is how long
-    sound is heard. `seed` of the dice: another one for each robot, by the chip's number if None. `t_delta_us`, `near_us`,
-    `path_change_us` are those of a robot that stands. `votes`: BY_MOTION, or one of the two fixed."""
+    """Settings of a ring of sensors that listen for `window_us` after their firing; README.md has them all in a table."""
 
     def __init__(
         self, sensors, window_us, blanking_us=0, least_us=None, most_us=None, rest_us=60000, dice_us=2000, seed=None, t_delta_us=80,
@@ -80,8 +58,7 @@ class Flow:
     ):  # fmt: skip
         seed = _seed_of_chip() if seed is None else seed
         self.min_refire_us = max(rest_us, window_us)
-        if most_us is None:
-            # Two ninths of the window for the tail, but its own stale echoes are never foreign.
+        if most_us is None:  # two ninths of the window for the tail, but its own stale echoes are never foreign
             most_us = min(window_us + window_us // 9 * 2, self.min_refire_us + blanking_us - 1)
         least_us = most_us // 11 * 2 if least_us is None else least_us
         narrow = min(window_us, 1 << 16) - 1
@@ -100,7 +77,7 @@ class Flow:
 class _Sensor:
     def __init__(self, now_us, long_ago_us, doubt):
         self.period, self.age, self.enabled = 0, NEVER, True
-        # The quiet that it needs around its firing, in units; when it fired, if it has; it has fired in this round before its turn.
+        # The quiet that it needs, in units; when it fired, if it has; it has fired in this round before its turn.
         self.doubt, self.fired_us, self.has_fired, self.ahead = doubt, now_us, False, False
         self.seen_us = self.by = None
         self.unsee(now_us)
@@ -112,20 +89,17 @@ class _Sensor:
     def see(self, kind, echo_us, explained_by, now_us):
         if kind == LATE and echo_us is not None:
             return  # after the reading of its firing
-        # "no_witness": nothing confirms silence, again.
         shows, known = "no_witness" if kind == NO_ECHO and self.no_echo else _SHOWS[kind], self.shows
         self.no_echo = kind == NO_ECHO
         if shows in _WHYS and known == "obstacle" and not self.doubted:
             self.doubted = True  # one echo may be missed, or another's heard
             return
         self.shows, self.by, self.doubted = shows, explained_by, False
-        # For how long nothing is known or answered goes on.
-        if not (shows == known == "unanswered" or shows in _WHYS and known in _WHYS):
+        if not (shows == known == "unanswered" or shows in _WHYS and known in _WHYS):  # else the same goes on
             self.seen_us, self.seen_at = echo_us, now_us
 
     def forget(self):
-        # The last reading and what is believed; since that was confirmed, firings, and by how much a good reading may have changed;
-        # the greatest rate since the last firing; contradictions that the belief outlasts.
+        # The last reading, what is believed; firings and change of a good reading since; the greatest rate; contradictions it outlasts.
         self.last_us, self.believed_us, self.missed, self.grown, self.rate, self.conf = None, None, 0, 0, 0, 0
 
     def drop(self, long_ago_us):
@@ -142,30 +116,24 @@ class _Sensor:
 
 
 class FlowRing:
-    """A ring that fires one sensor after the other, with as much quiet around each firing as its readings have needed. `now_us`
-    is a reading of a clock of `clock_bits` bits, which may wrap: 32, or on a board those of `time.ticks_us`, mostly 30. Poll it
-    at its deadline, hand in echoes as they come. A reading is accepted if it fits what is believed, or if it agrees with the one
-    before and no sound of the ring explains both; or where every echo is."""
+    """A ring whose clock has `clock_bits` bits and may wrap, as `time.ticks_us`. Poll it at its deadline, hand in echoes as they come."""
 
     def __init__(self, flow, now_us, clock_bits=32):
         _check("clock_bits", clock_bits, 28, 64)
         self.flow, self._mask, self._half = flow, (1 << clock_bits) - 1, 1 << (clock_bits - 1)
-        # Longer ago than any sound is heard; by how much a clock may step back; a round of the longest gaps.
+        # Longer ago than sound is heard; by how much a clock may step back; a round of the longest gaps.
         self._long_ago, self._step_back = 1 << (clock_bits - 2), 1 << min(20, clock_bits - 4)
         self._horizon = (flow.sensors + 1) * (flow.most_us + 2 * flow.dice_us) + flow.min_refire_us
-        # A reading without echo comes no sooner; what silence means of a sensor that has not shown that it listened.
-        self.report_after_us, self.silence = 0, NEVER_FREE
+        self.report_after_us, self.silence = 0, NEVER_FREE  # a reading without echo comes no sooner; silence without a sign
         self._known_from = self._long_before(now_us)  # firings before are not known
         more_us = flow.most_us - flow.least_us
         self._first = (flow.least_us + more_us // 5) // _UNIT_US
         self._up, self._down = more_us // 4 // _UNIT_US, more_us // 10 // _UNIT_US
         self._sensors = [_Sensor(now_us, self._known_from, self._first) for _ in range(flow.sensors)]
         self._oldest, self._pending, self._emit_at, self._seen = NOBODY, 0, now_us, now_us
-        self._period = self._latest = self._total = 0  # the last two: this period's lateness
-        self._tally = [0] * len(READING_NAMES)
+        self._period = 0
         self._top = self._rate = _rate(flow.top_speed_mm_s)
-        # The last word of motion; the greatest rates in the spans before and from an instant on, about as long as sound is heard.
-        self._told, self._before, self._greatest, self._since = None, self._top, self._top, 0
+        self._told, self._before, self._greatest, self._since = None, self._top, self._top, 0  # the last word of motion; the greatest rates
         # The place in the order whose turn it is, how many have fired ahead of theirs, when a sensor last fired.
         self._order, self._place, self._ahead, self._last_fired = _in_order(flow.sensors), 0, 0, now_us
         self._high, self._low = flow.seed >> 16, flow.seed & 0xFFFF
@@ -184,8 +152,7 @@ class FlowRing:
     def _reached(self, now_us, deadline_us):
         return (now_us - deadline_us) & self._mask < self._half
 
-    def _throw(self):
-        # Xorshift by 13, 17 and 5 (Marsaglia, 2003), in halves, since a small integer has 31 bits.
+    def _throw(self):  # xorshift by 13, 17 and 5 (Marsaglia, 2003), in halves, since a small integer has 31 bits
         high, low = self._high, self._low
         high, low = high ^ (high << 13 | low >> 3) & 0xFFFF, low ^ low << 13 & 0xFFFF
         low ^= high >> 1
@@ -200,8 +167,7 @@ class FlowRing:
         """The quiet that a sensor needs before its firing and after it."""
         return max(self._sensors[x].doubt * _UNIT_US, self._least())
 
-    def _since_last(self, at_us):
-        # From the last firing of any until an instant, or 0.
+    def _since_last(self, at_us):  # from the last firing of any until an instant, or 0
         us = (at_us - self._last_fired) & self._mask
         return us if us <= self._half else 0
 
@@ -233,13 +199,11 @@ class FlowRing:
                 rested = self._since_last(sensor.fired_us + (flow.min_refire_us if sensor.listening else flow.rest_us))
             if rested <= quiet or self._next == NOBODY:
                 self._next, self._due = order[place], (self._last_fired + max(quiet, rested) + self._thrown) & self._mask
-            # Nobody is passed over twice: only while no other has fired ahead.
-            if rested <= quiet or self._ahead:
+            if rested <= quiet or self._ahead:  # nobody is passed over twice
                 break
             place = self._first_from(place + 1)
 
-    def _decide_from(self, now_us):
-        # By what is told only now: nothing is due sooner than that, unless it was. Without a clock, no sooner than it was.
+    def _decide_from(self, now_us):  # by what is told only now: nothing is due sooner than that, unless it was
         due = self._due
         self._decide()
         due = due if self._reached(now_us, due) else now_us
@@ -247,12 +211,10 @@ class FlowRing:
             self._due = due
 
     def upcoming(self):
-        """The next firing in a list, (sensor, instant), for hardware that fires by itself; none if the round ends first. It holds until a
-        reading is emitted. Later poll at that instant until there is no event, hand in echoes, and poll at the present."""
+        """The next firing, (sensor, instant), in a list, for hardware that fires by itself; none if the round ends first."""
         return [] if self._next == NOBODY else [(self._next, self._due)]
 
-    def _set_moves(self):
-        # Takes in the rate that holds now.
+    def _set_moves(self):  # takes in the rate that holds now
         flow, moves = self.flow, self._rate > 0
         if self._moves != moves:
             self._moves = moves
@@ -260,8 +222,7 @@ class FlowRing:
                 sensor.conf = min(sensor.conf, 1)
         self._every_echo = flow.votes == EVERY_ECHO or flow.votes == BY_MOTION and flow.alone and moves
 
-    def _recent(self, now_us):
-        # The greatest rate while sound could be sent that is heard now.
+    def _recent(self, now_us):  # the greatest rate while sound could be sent that is heard now
         if self._told is not None and _TOLD_US < (now_us - self._told) & self._mask < self._half:
             self._told, self._rate = None, self._top
         if _HEARD_US < (now_us - self._since) & self._mask < self._half:
@@ -271,8 +232,7 @@ class FlowRing:
 
     def moving(self, speed_mm_s, turn_mrad_s, now_us):
         """Says how fast the robot moves and turns, once a control cycle. It holds for half a second, then the top speed does."""
-        if not self._reached(now_us, self._since):
-            # The first word of a clock in its upper half, or one that has jumped.
+        if not self._reached(now_us, self._since):  # the first word of a clock in its upper half, or one that has jumped
             self._since, self._before, self._greatest = now_us, max(self._before, self._greatest), 0
         recent = self._recent(now_us)
         self._rate, self._told = _rate(abs(speed_mm_s) + abs(turn_mrad_s) // 2), now_us
@@ -282,16 +242,14 @@ class FlowRing:
         self._set_moves()
         self._decide_from(now_us)
 
-    def _grow(self, sensor, since_us):
-        # By how much a good reading may have changed since an instant: what it heard was sent a while before.
+    def _grow(self, sensor, since_us):  # by how much a good reading may have changed since an instant
         recent = self._recent(sensor.firings[0])
         self._set_moves()
         span = max(sensor.rate, recent) * min((sensor.firings[0] - since_us) & self._mask, 0xFFFFF) >> 14
         sensor.rate, sensor.grown = recent, min(sensor.grown + span, 0xFFFF)
         return span
 
-    def _judge(self, x, sensor, echo, since_us):
-        # Judges an echo, or silence with a witness, that may have changed since an instant: (kind, age, explained_by).
+    def _judge(self, x, sensor, echo, since_us):  # an echo, or silence with a witness: (kind, age, explained_by)
         flow, explained_by, span = self.flow, None, self._grow(sensor, since_us)
         believed_us, last_us, at_us = sensor.believed_us, sensor.last_us, _SILENCE if echo is None else echo
         believes, fits, held_back = believed_us is not None, False, False
@@ -302,8 +260,7 @@ class FlowRing:
             explained_by = self._explanation(x, last_us, echo, flow.path_change_us + span)
             ok = explained_by is None
         far = believes and not fits and (echo is None or echo > believed_us)
-        if believes and not self._moves:
-            # What is farther, or silence, must outlast what is believed.
+        if believes and not self._moves:  # what is farther, or silence, must outlast what is believed
             if fits:
                 sensor.conf = min(sensor.conf + 1, flow.hold)
             elif far:
@@ -319,8 +276,7 @@ class FlowRing:
             kind, explained_by = ACCEPTED, None
         elif explained_by is not None or held_back:
             kind = REPEATED if explained_by is None else AMBIGUOUS
-        # Readings of a robot that moves differ anyway: quiet that did not help twice is let go, then tried again. It does not
-        # help against what the ring did not fire.
+        # Readings of a robot that moves differ: quiet that did not help is let go. Nor does it help against what the ring did not fire.
         lets_go = self._moves and not self._every_echo and sensor.missed & 2
         masked = not ok and echo is not None and not far and self._is_masked(x, sensor.firings[0] + echo)
         if masked and not lets_go:
@@ -338,9 +294,7 @@ class FlowRing:
         sensor.last_us = at_us
         return kind, age, explained_by
 
-    def _explanation(self, receiver, first, second, change):
-        # Whose sound could be both echoes, after the receiver's firing before its last and its last, by a path that changes by at
-        # most `change`; HISTORY if a forgotten firing's could, else None.
+    def _explanation(self, receiver, first, second, change):  # whose sound could be both echoes; HISTORY if a forgotten firing's
         mask, own = self._mask, self._sensors[receiver]
         off = max(own.off, own.off_before)  # as late as that, and twice as long ago
         first, second = (own.firings[1] + first + off) & mask, (own.firings[0] + second + off) & mask
@@ -351,8 +305,7 @@ class FlowRing:
         forgotten = (first - self._known_from + self._half) & mask < self._half + audible
         for x in range(self.flow.sensors):
             firings = self._sensors[x].firings
-            # The receiver's own two firings are those whose echoes it is meant to hear.
-            latest, left_out = (1, 1) if x == receiver else (0, -1)
+            latest, left_out = (1, 1) if x == receiver else (0, -1)  # its own two are those it is meant to hear
             for i in range(3):
                 age = (first - firings[i]) & mask
                 for j in range(latest, i + 1 if age <= audible and i != left_out else 0):
@@ -362,12 +315,9 @@ class FlowRing:
             forgotten = forgotten or (age + self._half) & mask < self._half + audible
         return HISTORY if forgotten else None
 
-    def _is_masked(self, receiver, heard):
-        # Whether sound of any firing but the receiver's last could be what it heard.
-        for x in range(3 * self.flow.sensors):
-            if (heard - self._sensors[x // 3].firings[x % 3]) & self._mask <= self.flow.most_us and x != 3 * receiver:
-                return True
-        return False
+    def _is_masked(self, receiver, heard):  # whether sound of any firing but the receiver's last could be what it heard
+        ages = ((heard - self._sensors[x // 3].firings[x % 3]) & self._mask for x in range(3 * self.flow.sensors) if x != 3 * receiver)
+        return any(age <= self.flow.most_us for age in ages)
 
     def believed_us(self, x):
         """The echo time that is believed of a sensor; None if none is, or nothing is in range."""
@@ -384,8 +334,7 @@ class FlowRing:
             if (self._due - now_us) & self._mask > self._horizon:
                 self._restart(now_us)  # the clock has jumped
             return None
-        # Apart: MicroPython keeps the variables of larger functions in the heap, where finding room takes longer the fuller it is.
-        return self._advance(now_us, is_due)
+        return self._advance(now_us, is_due)  # apart: variables of larger functions are kept in the heap, which is slow
 
     def _advance(self, now_us, is_due):
         if not self._reached(now_us + self._step_back, self._seen):
@@ -415,17 +364,14 @@ class FlowRing:
         return self._emit_at if self._pends() and not self._reached(self._emit_at, self._due) else self._due
 
     def state(self, x, now_us):
-        """Returns what is before a sensor: (kind, t_echo_us, age_us, why, explained_by). The kind is "obstacle", "clear", "too_close",
-        "unanswered", or "unknown" with why: "no_firing", "unsure", "rejected", "no_witness" or "ambiguous". The age is the time since that
-        was confirmed, or for which nothing is known. Two readings in a row that do not confirm an obstacle end it, any echo "clear"."""
+        """What is before a sensor, and since when: (kind, t_echo_us, age_us, why, explained_by)."""
         sensor = self._sensors[x]
         age_us = min((now_us - sensor.seen_at) & self._mask, self._half)
         if sensor.shows in _WHYS:
             return "unknown", None, age_us, sensor.shows, sensor.by
         return sensor.shows, sensor.seen_us if sensor.shows == "obstacle" else None, age_us, None, None
 
-    def _end_oldest(self, x, before):
-        # A sensor that fired at `before` has ended: who is the oldest now, and when its window closes. 1 us before is not a turn after.
+    def _end_oldest(self, x, before):  # one that fired at `before` has ended: who is the oldest now, and when its window closes
         if self._oldest == x:
             self._oldest, soonest = NOBODY, self._mask
             for other in range(self.flow.sensors):
@@ -438,7 +384,6 @@ class FlowRing:
 
     def _fire(self, x, now_us):
         sensor = self._sensors[x]
-        self._note((now_us - self._due) & self._mask)
         sensor.listening, sensor.period, sensor.can_emit, sensor.outside = True, self._period, False, False
         sensor.evidence = _LISTENED if self.silence == TRUSTED else _NOTHING
         sensor.firings.insert(0, now_us)
@@ -454,13 +399,6 @@ class FlowRing:
         sensor.has_fired, sensor.fired_us, self._last_fired = True, now_us, now_us
         self._throw()
         self._decide()
-
-    def _note(self, late_us):
-        self._latest = max(self._latest, min(late_us, 0xFFFF))
-        self._total = min(self._total + late_us, 0xFFFF)
-
-    def _count(self, kind):
-        self._tally[kind] = min(self._tally[kind] + 1, 255)
 
     def _emit(self, x, now_us):
         sensor = self._sensors[x]
@@ -482,13 +420,11 @@ class FlowRing:
                 kind = TOO_EARLY
             elif evidence == _NOTHING and echo is None:
                 kind = UNANSWERED if self.silence == NEEDS_ANSWER else NO_ECHO
-            if kind is not None:
-                # It says nothing of an echo.
+            if kind is not None:  # it says nothing of an echo
                 self._grow(sensor, before)
                 sensor.miss()
                 sensor.last_us = None
-            elif evidence == _HELD and echo is None:
-                # No silence yet, nor the end of a run of them.
+            elif evidence == _HELD and echo is None:  # no silence yet, nor the end of a run of them
                 self._grow(sensor, before)
                 previous, kind = None, CLEAR if sensor.believed_us == _SILENCE and not sensor.missed else NO_ECHO
                 sensor.last_us = _SILENCE if sensor.last_us == _SILENCE else None
@@ -499,18 +435,13 @@ class FlowRing:
             sensor.listening = sensor.outside = False
             self._decide_from(now_us)
         self._end_oldest(x, fired)
-        self._count(kind)
-        # Rust and C keep three bits of the period; of an edge that is later they say a later one.
-        period = (self._period - (self._period - sensor.period & 7)) & 0xFFFFFFFF
+        period = (self._period - (self._period - sensor.period & 7)) & 0xFFFFFFFF  # three bits are kept, as in Rust and C
         return (READING, x, 0, period, kind, echo, previous, age, explained_by)
 
     def _end_period(self, now_us):
-        latest = max(self._latest, min((now_us - self._due) & self._mask, 0xFFFF))
-        event = (PERIOD, 0, self._period, latest, self._total, self._tally)
-        self._latest = self._total = self._place = self._ahead = 0
-        self._period, self._tally = (self._period + 1) & 0xFFFFFFFF, [0] * len(READING_NAMES)
-        for sensor in self._sensors:
-            # Those that fired ahead have had their turn; the clock must not come round to the others.
+        event = (PERIOD, 0, self._period)
+        self._place, self._ahead, self._period = 0, 0, (self._period + 1) & 0xFFFFFFFF
+        for sensor in self._sensors:  # those that fired ahead have had their turn; the clock must not come round to the others
             sensor.ahead = False
             sensor.has_fired = sensor.has_fired and (now_us - sensor.fired_us) & self._mask <= self._half >> 2
             if self._is_long_ago(sensor.firings[0], now_us):
@@ -527,18 +458,12 @@ class FlowRing:
         self._decide_from(self._due)
         return event
 
-    def _is_long_ago(self, at_us, now_us):
-        # But not what lies just ahead of now, from before the clock stepped back.
+    def _is_long_ago(self, at_us, now_us):  # but not what lies just ahead of now, from before the clock stepped back
         return self._long_ago < (now_us - at_us) & self._mask <= self._mask - self._step_back
 
-    def echo(self, x, at_us):
-        """An echo, at this instant."""
-        self.echo_between(x, at_us, at_us)
-
-    def echo_between(self, x, earliest_us, latest_us):
-        """An echo that came after the line was last seen without it, at `earliest_us`, and before it was seen, at `latest_us`. The middle counts,
-        and a sound explains what it may. One that is more than 300 us off either way, 5 cm, is LATE, without echo time."""
-        sensor, flow = self._sensors[x], self.flow
+    def echo(self, x, earliest_us, latest_us=None):
+        """An echo at this instant, or between two: the middle counts. More than 300 us off either way, 5 cm, it is LATE, without a time."""
+        sensor, flow, latest_us = self._sensors[x], self.flow, earliest_us if latest_us is None else latest_us
         width = (latest_us - earliest_us) & self._mask
         if width >= self._half:
             raise ValueError("an echo between %d and %d us: latest before earliest, likely swapped" % (earliest_us, latest_us))
@@ -554,7 +479,6 @@ class FlowRing:
         elif t_echo - (off if wide else 0) > flow.window_us:
             if sensor.evidence == _HELD:
                 sensor.evidence = _LISTENED
-            self._count(LATE)
             return
         elif wide:
             if not sensor.outside and sensor.echo_us is not None and sensor.echo_us <= t_echo - off:
@@ -575,8 +499,7 @@ class FlowRing:
             self._pending += 1
 
     def fired(self, x, at_us):
-        """Corrects when a sensor last fired, before you poll for readings that may hold its sound. An instant that is not after the firing
-        before is ignored."""
+        """Corrects when a sensor last fired, before you poll for readings that may hold its sound."""
         sensor = self._sensors[x]
         firings, polled = sensor.firings, sensor.firings[0]
         if at_us == polled or at_us == firings[1] or not self._reached(at_us, firings[1]):
@@ -584,11 +507,9 @@ class FlowRing:
         firings[0], later = at_us, self._signed(at_us - polled)
         if sensor.echo_us is not None:
             sensor.echo_us -= later
-            if sensor.echo_us < 0:
-                # The first edge came before it fired, and may have kept out the echo.
+            if sensor.echo_us < 0:  # the first edge came before it fired, and may have kept out the echo
                 sensor.echo_us, sensor.outside = 0, True
-        if not sensor.listening and sensor.last_us is not None and sensor.last_us < _SILENCE:
-            # Its reading is judged already.
+        if not sensor.listening and sensor.last_us is not None and sensor.last_us < _SILENCE:  # its reading is judged already
             sensor.last_us = max(sensor.last_us - later, 0)
             if not sensor.missed:
                 sensor.believed_us = max(sensor.believed_us - later, 0)
@@ -598,8 +519,6 @@ class FlowRing:
                 self._last_fired = at_us
             sensor.fired_us = at_us
             self._decide_from(self._due)
-        if sensor.listening and later > 0:
-            self._note(later)
         if self._oldest == x:
             self._end_oldest(x, polled)
 
@@ -632,7 +551,7 @@ class FlowRing:
             self.answered(x)
         else:
             fired_us, most_us = self._sensors[x].firings[0], least_us if most_us is None else most_us
-            self.echo_between(x, (fired_us + least_us) & self._mask, (fired_us + most_us) & self._mask)
+            self.echo(x, (fired_us + least_us) & self._mask, (fired_us + most_us) & self._mask)
 
     def forget(self, x):
         """Forgets a sensor's echo, which is not what it seemed: its next reading is compared with nothing."""
@@ -668,8 +587,7 @@ class FlowRing:
 
     def _restart(self, now_us):
         self._known_from = now_us
-        for sensor in self._sensors:
-            # Sound from before may still be heard. A sensor that was said to fire a little later still does.
+        for sensor in self._sensors:  # sound from before may still be heard. A sensor that was said to fire a little later still does.
             if (sensor.firings[0] - self._known_from - 1) & self._mask < self._step_back:
                 self._known_from = sensor.firings[0]
             sensor.drop(self._long_before(now_us))
@@ -677,21 +595,17 @@ class FlowRing:
             sensor.has_fired = sensor.has_fired and (now_us - sensor.fired_us) & self._mask <= self.flow.rest_us
             sensor.ahead, sensor.doubt = False, self._first
         self._oldest, self._pending, self._place, self._ahead = NOBODY, 0, 0, 0
-        # Sound from before dies away.
-        self._last_fired = (now_us + self.flow.most_us) & self._mask
+        self._last_fired = (now_us + self.flow.most_us) & self._mask  # sound from before dies away
         self._decide()
 
 
 class HcSr04FlowRing:
     """A ring of HC-SR04 modules, on one pin each or with the echo lines on other pins. `read` samples the lines: call it often."""
 
-    # Of an HC-SR04; a subclass for another module has its own.
-    DEAF_US, SHORTEST_US, LONGEST_US = 100, 100, 36000
-    MIN_RETRIGGER_US, TRIGGER_US = 60000, 10
-    LATEST_RISE_US = 1400  # a line that is still low then is not raised by its trigger: exchanged wires, or a disturbance
-    LONGEST_HOLD_US = 250000  # a line that rose and is high no longer than this listens still: clones hold 200 ms
-    # A stuck line is pulled low for so long, such as 200 us, if not 0: some modules hold it after a lost echo. It needs 1 kOhm.
-    RECOVERY_US = 0
+    # Of an HC-SR04; a subclass for another module has its own. A line that rises later was not raised by its trigger; one that is
+    # high no longer than the hold listens still. A stuck line is pulled low for the last, such as 200 us, if not 0: it needs 1 kOhm.
+    DEAF_US, SHORTEST_US, LONGEST_US, MIN_RETRIGGER_US, TRIGGER_US = 100, 100, 36000, 60000, 10
+    LATEST_RISE_US, LONGEST_HOLD_US, RECOVERY_US = 1400, 250000, 0
 
     def __init__(self, flow, pins, echoes=None, machine=None, time=None):
         _check("rest_us", flow.rest_us, self.MIN_RETRIGGER_US, 4000000)
@@ -707,15 +621,14 @@ class HcSr04FlowRing:
             bits += 1
         self.ring = FlowRing(flow, time.ticks_us(), bits)
         self.ring.silence = NEEDS_ANSWER  # a line that does not rise is no free space
-        # When a line was seen to have risen, and by how much sooner it may have; when it was last seen as it is.
+        # When a line rose, by how much sooner it may have; when it was last seen as it is.
         self._rose, self._early, self._seen = [None] * len(pins), [0] * len(pins), [0] * len(pins)
         self._awaits = [False] * len(pins)
 
     def _since_firing(self, x, now):
         return self._time.ticks_diff(now, self.ring._sensors[x].firings[0])
 
-    def _sample(self, before):
-        # Small and without objects of its own, for the same reason as `FlowRing.poll`.
+    def _sample(self, before):  # small and without objects of its own, as `FlowRing.poll`
         for x in range(len(self._awaits)):
             if self._awaits[x]:
                 high = self._echoes[x].value()
@@ -764,8 +677,7 @@ class HcSr04FlowRing:
         pin.value(1)
         self._time.sleep_us(self.TRIGGER_US)
         pin.value(0)
-        # What is compared is what was fired, and since the poll some time has passed.
-        self._seen[x] = self._time.ticks_us()
+        self._seen[x] = self._time.ticks_us()  # what is compared is what was fired
         self.ring.fired(x, self._seen[x])
         if self._one_pin:
             pin.init(self._pin.IN)
@@ -780,8 +692,7 @@ class HcSr04FlowRing:
 
     def read(self):
         """One step; a reading if there is one, else None."""
-        # The clock is read before the lines, so that no window closes on an edge that came in time.
-        now = self._time.ticks_us()
+        now = self._time.ticks_us()  # before the lines, so that no window closes on an edge that came in time
         self._sample(now)
         event = self.ring.poll(now)
         if event and event[0] == FIRE:

@@ -22,7 +22,7 @@ import test_corpus, test_line_faults, test_modules
 print(sys.implementation.name, ".".join(str(n) for n in sys.implementation.version[:3]))
 with open("/corpus.txt") as corpus:
     test_corpus.main(corpus.read())
-test_modules.main()
+test_modules.settings()
 with open("/line-faults.txt") as faults:
     print(len(test_line_faults.check(faults.read())), "faults of a line")
 `);

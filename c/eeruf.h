@@ -139,7 +139,7 @@ enum { EERUF_LAYOUT_LINE = 0, EERUF_LAYOUT_RING = 1, EERUF_LAYOUT_BLOCKS = 2, EE
 
 /* The limits of one sensor, where they are not all alike. */
 typedef struct EerufLimits {
-    uint32_t window_us;   /* for how long it listens; in requirements 0 for as long as the schedule allows */
+    uint32_t window_us;   /* for how long it listens; 0: as long as the schedule allows */
     uint16_t t_delta_us;  /* what counts as the same echo */
     uint8_t group;        /* sensors of one group fire together and do not hear each other; 0 for none */
 } EerufLimits;
@@ -216,10 +216,10 @@ typedef struct EerufFilter {
 
    Sound of a sensor explains two readings, heard at h1 and h2, if it fired at a and b with 0 <= h1 - a <= R,
    0 <= h2 - b <= R and |(h2 - b) - (h1 - a)| <= P; the receiver's own two firings, whose echoes it is meant to hear, do
-   not count. That is asked of what was fired, not of what was planned: late polls, pauses, restarts and changes of
-   schedule may cost readings, but no single path of foreign sound that is audible for at most R and changes by at most
-   P is ever accepted. Such readings are EERUF_READING_AMBIGUOUS. While firings are as punctual as the schedule was
-   verified for, none is, and the ring does not ask. */
+   not count. That is asked of what was fired, not of what was planned: late polls, pauses and restarts may cost
+   readings, but no single path of foreign sound that is audible for at most R and changes by at most P is ever accepted.
+   Such readings are EERUF_READING_AMBIGUOUS. While firings are as punctual as the schedule was verified for, none is, and
+   the ring does not ask. */
 
 /* One sensor of a ring: 30 bytes on an AVR. Not for the caller. */
 typedef struct EerufSensor {

@@ -119,22 +119,10 @@ pub(super) fn before_walls(
     walls: &[Option<u32>],
     pins: &[u8],
 ) -> Result<String> {
-    output(&mut among_walls(world, elf, options, seconds, walls, pins)?)
-}
-
-/// The command that runs it so.
-pub(super) fn among_walls(
-    world: &Path,
-    elf: &Path,
-    options: &[&str],
-    seconds: u32,
-    walls: &[Option<u32>],
-    pins: &[u8],
-) -> Result<Command> {
     let way = |(module, us): (usize, &Option<u32>)| us.map(|us| format!("{module} {module} {us}\n"));
     let ways = Path::new(TARGET).join("walls.txt");
     fs::write(&ways, walls.iter().enumerate().filter_map(way).collect::<String>())?;
-    Ok(command(world, options, elf, seconds, &ways, pins))
+    output(&mut command(world, options, elf, seconds, &ways, pins))
 }
 
 /// Runs a sketch for some seconds of its own time. With `causes` the world says what ended each pulse, which it cannot

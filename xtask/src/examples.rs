@@ -21,8 +21,8 @@ pub(crate) const BOARDS: [(&str, &str); 4] = [
 
 const UNO: (&str, &str) = ("uno", "avr-none");
 
-/// Examples that fire by a table; the other fires by flow.
-const BY_TABLE: [&str; 3] = ["uno", "pico", "esp32-c3"];
+/// Examples that fire by a table; the others fire by flow.
+const BY_TABLE: [&str; 2] = ["uno", "pico"];
 
 /// All of them, or the one that is named.
 pub(crate) fn examples(only: Option<&str>, steps: &mut Steps) {

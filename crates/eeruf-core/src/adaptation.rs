@@ -42,7 +42,7 @@ pub struct OnLadder<L> {
     /// Above this rejection rate, in thousandths, it fires more slowly. Default: 300, a choice of ours; the paper names
     /// none.
     pub noisy_permille: u16,
-    /// Up to this rejection rate, in thousandths, a window is calm. Default: 100.
+    /// Largest rejection rate of a calm window, in thousandths. Default: 100.
     pub calm_permille: u16,
     /// The number of periods in a window. Default: 16; 0 counts as 1.
     pub window: u8,

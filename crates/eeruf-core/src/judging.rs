@@ -76,7 +76,7 @@ impl Age {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
 pub enum Explained {
-    /// No firing explains them.
+    /// Readings that no firing explains.
     ByNothing,
     /// This firing explains them, or a forgotten one may.
     By(Explanation),
@@ -115,7 +115,7 @@ pub trait Sounds {
 pub enum Quiet {
     /// The last reading was believed: less will do.
     Less,
-    /// As before.
+    /// Quiet as before.
     Same,
     /// The last reading may be another firing's sound.
     More,
@@ -136,7 +136,7 @@ impl Pace {
     pub const STANDING: Self = Self { moves: false, every_echo: false };
 }
 
-/// No sound explains anything: for readings that no ring has fired.
+/// A source of no sound, for readings that no ring has fired.
 #[derive(Clone, Copy, Debug)]
 pub struct NoSounds;
 

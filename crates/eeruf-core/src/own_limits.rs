@@ -86,7 +86,7 @@ impl OwnLimits for () {
     fn hold(&self) {}
 }
 
-/// Limits of its own for each sensor; places beyond the last sensor say nothing.
+/// Limits for each sensor; entries beyond the last sensor are ignored.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct EachSensor<const K: usize> {

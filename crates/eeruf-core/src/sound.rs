@@ -18,7 +18,7 @@ pub struct SpeedOfSound {
 }
 
 impl SpeedOfSound {
-    /// At 20 C: 343.2 m/s (ISO 9613-1).
+    /// Speed of sound at 20 C: 343.2 m/s (ISO 9613-1).
     pub const AT_20_CELSIUS: Self = Self { mm_per_s: 343_200 };
 
     /// This speed, in mm/s.
@@ -26,8 +26,8 @@ impl SpeedOfSound {
         Self { mm_per_s }
     }
 
-    /// At a temperature in tenths of a degree Celsius: `343.2 sqrt(T / 293.15 K)` m/s (ISO 9613-1), rounded down to
-    /// mm/s. Below -273.1 C there is no sound.
+    /// Returns the speed of sound at a temperature in tenths of a degree Celsius: `343.2 sqrt(T / 293.15 K)` m/s (ISO
+    /// 9613-1), rounded down to mm/s. Below -273.1 C there is no sound.
     pub const fn at_celsius_tenths(tenths: i16) -> Self {
         let kelvin_hundredths = 27_315 + 10 * tenths as i32;
         if kelvin_hundredths < 0 {

@@ -34,12 +34,12 @@ pub struct SurveyPlan {
 const FURTHEST_BEGINNING: Micros = Micros::from_millis(600_000);
 /// A clock may step back by as much.
 const STEP_BACK: Micros = Micros::from_millis(1000);
-/// Longer times than this, in microseconds, are no survey of ultrasonic sensors: ten seconds.
+/// Longest time of a survey's settings, in microseconds: ten seconds.
 const LONGEST: u32 = 10_000_000;
 
 impl SurveyPlan {
-    /// For this many sensors, at most 64: each alone three times, then each ordered pair with 20 leads, 0.75 ms from
-    /// one to the next; windows of 36 ms, and 57 ms of silence, so that slots last 107.25 ms.
+    /// Begins a survey of at most 64 sensors: each alone three times, then each ordered pair with 20 leads, 0.75 ms
+    /// from one to the next; windows of 36 ms, and 57 ms of silence, so that slots last 107.25 ms.
     pub const fn new(sensors: u8) -> Self {
         let sensors = if sensors as usize > MAX_SENSORS { MAX_SENSORS as u8 } else { sensors };
         let [lead_step, window, quiet] = [Micros::new(750), Micros::new(36_000), Micros::new(57_000)];

@@ -86,7 +86,7 @@ impl Uneven<'_> {
         Ok(())
     }
 
-    /// Returns true if two sensors are in one of these sets.
+    /// Returns true if one of the sets holds both sensors.
     pub(crate) const fn in_one(sets: &[u64], x: usize, y: usize) -> bool {
         let mut at = 0;
         while at < sets.len() {

@@ -127,8 +127,8 @@ enum Known {
 const LONGEST: Micros = Micros::new(1 << 31);
 
 impl<const K: usize> SensorWatch<K> {
-    /// Nothing is known yet, `now`. A sensor counts as blind when nothing was accepted for `blind_after` firings with
-    /// an echo, 1 to 255; with 0 no sensor does.
+    /// Begins a watch `now`, when nothing is known. A sensor counts as blind when nothing was accepted for
+    /// `blind_after` firings with an echo, 1 to 255; with 0 no sensor does.
     pub const fn new(blind_after: u8, now: Instant) -> Self {
         let nothing =
             Watched { known: Known::Nothing(Doubt::NoFiring), at: now, doubted: false, silent: false, echoes: 0 };

@@ -9,7 +9,7 @@ pub enum Health {
     /// The line answers, or it has not been asked often enough to know.
     #[default]
     Well,
-    /// Nothing comes from it when it is triggered: no sensor there, a cut wire, or no interrupts at all.
+    /// No answer to triggers: no sensor there, a cut wire, or no interrupts at all.
     Missing,
     /// The line was high when it was to be triggered.
     StuckHigh,

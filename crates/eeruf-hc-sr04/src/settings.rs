@@ -11,7 +11,7 @@ use crate::error::SetupError;
 pub struct Settings {
     /// Width of the trigger's pulse.
     pub trigger: Micros,
-    /// Edges sooner than this after the trigger are the trigger itself, seen through the cable.
+    /// Time after the trigger in which edges are the trigger itself, seen through the cable.
     pub deaf: Micros,
     /// Shorter pulses are no echoes: 100 us is 17 mm, less than the sensor can measure.
     pub shortest: Micros,
@@ -22,12 +22,12 @@ pub struct Settings {
     /// The longest that a healthy sensor holds its line where nothing is in range; many clones do for 130 to 200 ms. A
     /// line that rose after its trigger and is high for no longer is still listening, not stuck.
     pub longest_hold: Micros,
-    /// No sensor may be triggered again sooner.
+    /// Least time between two triggers of a sensor.
     pub min_retrigger: Micros,
     /// Time for which [`recover`](crate::HcSr04Ring::recover) pulls a stuck line low, a choice: 200 us, as sketches on
     /// forum.arduino.cc (524295) do.
     pub recovery: Micros,
-    /// After this many firings in a row without a pulse a sensor counts as missing.
+    /// Number of consecutive firings without a pulse after which a sensor counts as missing.
     pub missing_after: u8,
 }
 

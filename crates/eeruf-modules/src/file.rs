@@ -19,9 +19,9 @@ pub struct ModuleFile(pub Module);
 /// A module for all sensors, or a list of one for each.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ModulesFile {
-    /// For all.
+    /// One module for all.
     All(Module),
-    /// For each, in their order.
+    /// One module for each, in their order.
     Of(Vec<Module>),
 }
 

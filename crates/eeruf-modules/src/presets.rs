@@ -2,7 +2,7 @@
 
 use crate::module::{Beam, CLONE_HOLDS_US, Gain, Interface, Module, NoEcho};
 
-/// Where a figure comes from.
+/// The source of a figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
     /// A document that gives it, and what it says.
@@ -18,12 +18,12 @@ pub struct Preset {
     pub module: &'static Module,
     /// The name as its maker writes it.
     pub title: &'static str,
-    /// For each figure, by its name in files, where it comes from.
+    /// The source of each figure, by its name in files.
     pub sources: &'static [(&'static [&'static str], Source)],
 }
 
 impl Preset {
-    /// Where a figure comes from, by its name in files.
+    /// Returns the source of a figure, by its name in files.
     pub fn source(&self, key: &str) -> Option<Source> {
         self.sources.iter().find(|(keys, _)| keys.contains(&key)).map(|&(_, source)| source)
     }

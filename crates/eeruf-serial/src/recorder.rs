@@ -23,7 +23,7 @@ pub struct Recorder<const K: usize> {
 }
 
 impl<const K: usize> Recorder<K> {
-    /// For a board whose clock is called so: ASCII, of which 16 bytes are sent.
+    /// Records for a board whose clock has this name: ASCII, of which 16 bytes are sent.
     pub const fn new(clock: &'static str) -> Self {
         const { assert!(K >= 1 && K <= MAX_SENSORS, "a Recorder has room for 1 to 64 sensors") };
         Self { encoder: Encoder::new(), clock, fired: [(Instant::from_micros(0), Micros::ZERO); K], firings: 0 }

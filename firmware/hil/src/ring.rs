@@ -9,7 +9,7 @@ use eeruf_hil::{Record, SENSORS};
 use crate::host::Host;
 use crate::lines::{self, Pin};
 
-/// From the echo interrupt to the main loop.
+/// Edges from the echo interrupt to the main loop.
 static EDGES: EdgeQueue<32> = EdgeQueue::new();
 
 pub(crate) fn echo_interrupt() {

@@ -16,7 +16,7 @@ pub(crate) fn heard<const E: usize>(echoes: &[Micros; E]) -> &[Micros] {
     echoes.get(..heard).unwrap_or_default()
 }
 
-/// Puts one more echo into a sorted array, dropping the latest if it is full. What is no echo sorts last.
+/// Puts one more echo into a sorted array, dropping the latest if it is full. Missing echoes sort last.
 pub(crate) fn insert<const E: usize>(echoes: &mut [Micros; E], mut echo: Micros) {
     for held in echoes {
         if echo < *held {

@@ -8,9 +8,9 @@ use crate::reading::{Explanation, ReadingKind, Verdict};
 use crate::ring_error::RingError;
 use crate::time::{Instant, Micros};
 
-/// A belief that has missed readings ends where a good one may have changed by more than this.
+/// Largest possible change of a good reading, since the last one, up to which a belief is kept.
 const TOO_FAR: u16 = 1_000;
-/// Nothing was ever accepted, or so long ago.
+/// Age of a belief that never was, or is too old.
 const NEVER: u16 = u16::MAX;
 /// No reading to compare with, and no belief. As [`SILENCE`], later than any echo.
 const NOTHING: Micros = NO_ECHO;

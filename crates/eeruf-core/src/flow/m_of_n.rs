@@ -10,7 +10,7 @@ use crate::time::{Instant, Micros};
 /// No reading to compare with.
 const NOTHING: Micros = NO_ECHO;
 
-/// A reading, and its change since then.
+/// A reading, and the change expected of it since.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 struct Vote {
@@ -138,7 +138,7 @@ impl<const K: usize, const N: usize> MOfN<K, N> {
         Ok(Self { m, n, t_delta, motion, moves: false, quiet, known })
     }
 
-    /// With the speed in mm/s that holds where the robot says none.
+    /// Sets the speed in mm/s of a robot that reports none.
     #[must_use]
     pub const fn with_top_speed(self, speed_mm_s: u16) -> Self {
         Self { motion: Motion::new(speed_mm_s), moves: speed_mm_s > 0, ..self }

@@ -117,7 +117,7 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
         Ok(Self::begin(sensors, own_limits, settings, Pace::STANDING, window, now)?.grouped())
     }
 
-    /// Lets those fire together that do.
+    /// Sets the groups of sensors that fire together.
     pub(super) fn grouped(mut self) -> Self {
         self.group();
         self.decide();
@@ -231,7 +231,7 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
         group > 0 && self.own_limits.group_of(other) == group && self.is_enabled(other)
     }
 
-    /// Gives the turn of those that fire together to the first of them.
+    /// Gives the turn of each group to its first sensor.
     fn group(&mut self) {
         for sensor in 0..self.sensors {
             let group = self.own_limits.group_of(sensor);
@@ -243,7 +243,7 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
         }
     }
 
-    /// The quiet that those that listen still need.
+    /// The quiet that listening sensors still need.
     fn listeners(&self) -> Listeners {
         let mut all = Listeners { most: Micros::ZERO, whose: NOBODY, others: Micros::ZERO };
         if self.listening == 0 {
@@ -368,7 +368,7 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
 
 /// Quiet that sensors need which listen, from the last firing on.
 struct Listeners {
-    /// The most that one of them needs.
+    /// Longest quiet that a listening sensor needs.
     most: Micros,
     whose: u8,
     /// The most that any other needs.

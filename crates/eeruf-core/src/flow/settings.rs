@@ -38,8 +38,8 @@ impl TurnSettings {
         Self { least: Micros::new(6_000), most, rest, dice: Micros::from_millis(2), seed }
     }
 
-    /// For modules that listen for `window`, rest for `rest` and are deaf for `blanking`; of modules that are not all
-    /// alike, the longest window and rest, and the shortest blanking time.
+    /// Settings for modules that listen for `window`, rest for `rest` and are deaf for `blanking`; of modules that are
+    /// not all alike, the longest window and rest, and the shortest blanking time.
     ///
     /// Sound is taken to be heard for two ninths of the window after it: its tail. But no longer than until a sensor
     /// listens again, or its own stale echoes would count as foreign.
@@ -142,14 +142,14 @@ pub struct BeliefSettings {
     pub hold: u8,
     /// The speed that holds where the robot says none, in mm/s: 0, or at least 10.
     pub top_speed_mm_s: u16,
-    /// No other robot sends sound here.
+    /// True if no other robot sends sound nearby.
     pub alone: bool,
     /// Echoes in a row that make one accepted.
     pub votes: Votes,
 }
 
 impl BeliefSettings {
-    /// For every robot that stands unless it says otherwise.
+    /// Settings for a robot that stands unless it reports a speed.
     pub const DEFAULT: Self = Self {
         t_delta: Micros::new(80),
         near: Micros::new(150),

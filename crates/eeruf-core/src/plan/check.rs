@@ -178,7 +178,7 @@ impl Check {
         Ok(())
     }
 
-    /// Ends the listening of those whose time is up.
+    /// Ends the windows that are over.
     fn end_until<P: Plan>(&mut self, plan: &mut P, until: Instant) {
         // It believes nothing.
         let Ok(judge) = EchoFilter::<0>::new(Micros::new(1), 2) else { return };

@@ -100,7 +100,7 @@ pub trait Plan {
     fn last_firing(&self, sensor: u8, periods_ago: u8) -> FiringContext;
     /// Limits in the present period.
     fn limits(&self) -> Limits<'_>;
-    /// Limits as of the next period, if it changes to another schedule then.
+    /// Limits from the next period on, if the schedule changes with it.
     fn next_limits(&self) -> Option<Limits<'_>> {
         None
     }
@@ -116,6 +116,6 @@ pub trait Plan {
     }
     /// No sensor fires again within this time of firing.
     fn min_refire(&self) -> Micros;
-    /// No deadline lies further ahead than this, unless the clock has jumped.
+    /// Longest time to a deadline, unless the clock has jumped.
     fn horizon(&self) -> Micros;
 }

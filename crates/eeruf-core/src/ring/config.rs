@@ -16,8 +16,8 @@ pub enum Silence {
     /// A fault, [`Unanswered`](crate::ReadingKind::Unanswered), for drivers whose sensors show that they listen, as by
     /// a line that rises.
     NeedsAnswer,
-    /// As good as one with a witness: [`Clear`](crate::ReadingKind::Clear) once repeated. For simulations, and sensors
-    /// that cannot fail in silence: a cut wire is free space too.
+    /// Silence counts as one with a witness: [`Clear`](crate::ReadingKind::Clear) once repeated. For simulations, and
+    /// sensors that cannot fail in silence: a cut wire is free space too.
     Trusted,
 }
 
@@ -41,7 +41,7 @@ pub struct RingConfig<const E: usize = 1> {
     /// `T_wind`: how long a sensor listens after it has fired. An echo at exactly this time still counts. `None` for
     /// what the schedule was verified for.
     pub window: Option<Micros>,
-    /// Edges sooner than this after firing are ringing of the transducer, not echoes.
+    /// Time after a firing in which edges are ringing of the transducer, not echoes.
     pub blanking: Micros,
     /// The number of consecutive readings that must agree, 2 to 8.
     pub consecutive: u8,

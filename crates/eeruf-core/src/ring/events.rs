@@ -56,7 +56,7 @@ pub struct PeriodStats {
     pub phase: Phase,
     /// The readings emitted since the period before ended, by kind.
     pub tally: Tally<u8>,
-    /// The latest of its firings and its end: how long after it was due it was polled for, at most 65,535 us. A firing
+    /// Greatest lateness of the period's firings and its end, from due to polled, at most 65,535 us. A firing
     /// that a reading has brought forward is due from the poll on that told of it.
     pub max_late: Micros,
     /// The lateness of all its firings together, by which the timetable got longer; at most 65,535 us.

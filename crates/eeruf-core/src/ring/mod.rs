@@ -96,7 +96,7 @@ pub struct Ring<P, J, const K: usize, const E: usize = 1, const H: usize = 4> {
     punctuality: Punctuality,
     /// Firings before this are not known: the ring was restarted.
     known_from: Instant,
-    /// A reading without an echo is emitted no sooner than this after its firing.
+    /// Shortest time from a firing to a reading without an echo.
     report_after: Micros,
     sensors: [Sensor<E, H>; K],
     judge: J,

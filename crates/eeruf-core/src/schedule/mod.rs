@@ -62,7 +62,7 @@ struct Firings<const K: usize> {
     order: [u8; K],
     /// Time from the firing before to each, of the first from the start of the period; then `after_last`.
     gap: [Micros; K],
-    /// From the last firing to the end of the period.
+    /// Time from the last firing to the end of the period.
     after_last: Micros,
 }
 

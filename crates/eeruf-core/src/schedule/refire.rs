@@ -4,8 +4,8 @@ use super::{Phase, Schedule};
 use crate::time::Micros;
 
 impl<const K: usize, const M: usize> Schedule<K, M> {
-    /// From a sensor's firing in a phase to its next one, `T_p - d` or `T_p + d` with two phases: the `dt` over which a
-    /// good reading changes by `2 v dt / c`. `None` for a sensor or phase out of range.
+    /// Time from a sensor's firing in a phase to its next one, `T_p - d` or `T_p + d` with two phases: the `dt` over
+    /// which a good reading changes by `2 v dt / c`. `None` for a sensor or phase out of range.
     pub const fn refire_after(&self, phase: Phase, sensor: usize) -> Option<Micros> {
         if sensor < self.sensors as usize && (phase.0 as usize) < M {
             Some(self.refire(phase.0 as usize, sensor))

@@ -12,7 +12,7 @@ pub struct Progress {
     /// The best value found so far, in ticks, where one is sought: the shortest period, the largest interval or
     /// separation.
     pub best: Option<u32>,
-    /// No value is better than this, in ticks, as far as is proven.
+    /// Proven bound of the value, in ticks.
     pub bound: Option<u32>,
 }
 

@@ -11,7 +11,7 @@ pub struct Found<const K: usize> {
     pub schedule: Option<Schedule<K>>,
     /// The value that was optimised: the period, the smallest interval or `t_delta`.
     pub value: Option<Micros>,
-    /// No schedule is better than this; `None` if it is proven that there is none.
+    /// Proven bound of the value; `None` if no schedule exists.
     pub bound: Option<Micros>,
     /// True if no better schedule exists (or none at all, without a schedule).
     pub proven: bool,

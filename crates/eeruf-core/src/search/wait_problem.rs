@@ -99,7 +99,7 @@ pub enum Infeasible {
         /// `T_p`.
         period: Micros,
     },
-    /// Neither of them, as far as known, is to blame alone.
+    /// Both needs together; neither alone is known to be the reason.
     Together,
 }
 

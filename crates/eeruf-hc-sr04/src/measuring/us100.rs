@@ -49,7 +49,7 @@ impl<P: Read + ReadReady + Write> Us100<P> {
         Self { port, speed, bytes: [0; 4], count: 0, is_stale: false, broken: false }
     }
 
-    /// With another speed of sound, such as that of the air's temperature.
+    /// Sets the speed of sound, such as that at the air's temperature.
     #[must_use]
     pub fn with_speed(self, speed: SpeedOfSound) -> Self {
         Self { speed, ..self }

@@ -33,13 +33,13 @@ impl Default for Budget<'_> {
 }
 
 impl<'c> Budget<'c> {
-    /// No limit and no watcher: the search runs until it ends.
+    /// A budget without a limit: the search runs until it ends.
     #[must_use]
     pub const fn unlimited() -> Self {
         Self::nodes_at_most(u64::MAX)
     }
 
-    /// At most this many nodes.
+    /// A budget of at most this many nodes.
     #[must_use]
     pub const fn nodes_at_most(limit: u64) -> Self {
         Self {

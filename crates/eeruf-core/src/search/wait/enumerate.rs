@@ -29,7 +29,7 @@ impl<'p> Search<'p> {
         }
     }
 
-    /// The rest of that walk, after these waits in ticks.
+    /// Returns the tables that follow these waits, in ticks, in the walk's order.
     pub(crate) fn enumerate_after(&self, a: [u32; MAX_SENSORS], b: [u32; MAX_SENSORS]) -> Enumeration<'p> {
         let mut rest = Enumeration { a, b, ..self.enumerate() };
         let sensors = self.sensors();

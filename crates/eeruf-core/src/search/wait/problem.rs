@@ -3,7 +3,7 @@
 use crate::requirements::Criterion;
 use crate::search::Members;
 
-/// The longest period, in ticks: sums of a few times then stay far inside 32 bits.
+/// Longest period, in ticks: sums of a few times stay far within 32 bits.
 pub(crate) const MAX_PERIOD: u32 = 1 << 27;
 
 /// The wait-time problem, all times in ticks.

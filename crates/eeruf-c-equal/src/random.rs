@@ -72,7 +72,7 @@ impl Random {
         least + (self.any_of(bytes) % width) as u32
     }
 
-    /// Once in this many times.
+    /// Returns true once in this many times.
     pub fn once_in(&self, times: u32) -> bool {
         self.within(1, times) == 1
     }
@@ -83,7 +83,7 @@ impl Random {
         ((self.any_of(4) & 0xffff_ffff) as u32).checked_shr(32 - bits).unwrap_or(0).min(most)
     }
 
-    /// One of these.
+    /// Draws one of these.
     pub fn one_of<T: Copy>(&self, these: &[T]) -> T {
         these[self.within(0, these.len() as u32 - 1) as usize]
     }

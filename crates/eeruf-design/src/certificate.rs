@@ -27,7 +27,7 @@ pub fn certify(
 pub struct Stated {
     /// The period of its schedule, in ticks.
     pub period: u32,
-    /// No period is shorter, in ticks.
+    /// Proven bound of the period, in ticks.
     pub bound: u32,
     /// The nodes of the proof's tree, at most: two for each branching, as many as sensors if one of them fires next.
     pub nodes: usize,

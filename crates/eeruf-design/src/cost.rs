@@ -73,7 +73,7 @@ struct Both {
 }
 
 impl Both {
-    /// Under these conditions alone.
+    /// Returns the measurements under these conditions alone.
     fn under(&self, conditions: &[Condition]) -> Self {
         let only = |of: &Measured| Measured {
             ways: of.ways.clone(),

@@ -9,9 +9,9 @@ use serde::de::{Deserializer, Error, IntoDeserializer, SeqAccess, Visitor};
 /// One value for all sensors, or one for each.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Each<T> {
-    /// For all.
+    /// One value for all.
     All(T),
-    /// For each, in their order.
+    /// One value for each, in their order.
     Of(Vec<T>),
 }
 

@@ -12,7 +12,7 @@ pub struct FoundJson {
     pub schedule: Option<ScheduleFile>,
     /// The value that was optimised: the period, the smallest interval or `t_delta`.
     pub value_us: Option<u32>,
-    /// No schedule is better than this.
+    /// Proven bound of the value.
     pub bound_us: Option<u32>,
     /// True if no better schedule exists.
     pub proven: bool,
@@ -29,13 +29,13 @@ pub struct FoundJson {
     /// True if the atlas answered, and nothing was searched; only `design` says it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub from_atlas: Option<bool>,
-    /// No period is shorter than this by a short certificate; only `design` says it, of a period that is proven.
+    /// Bound of the period by a short certificate; only `design` says it, of a period that is proven.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub certified_us: Option<u32>,
 }
 
 impl FoundJson {
-    /// As found, after this many seconds; without a reason.
+    /// Returns the JSON of what was found after this many seconds, without a reason.
     pub fn new(found: &Found<MAX_SENSORS>, seconds: f64) -> Self {
         Self {
             schedule: found.schedule.as_ref().map(ScheduleFile::from),

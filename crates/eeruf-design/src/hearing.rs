@@ -8,7 +8,7 @@ use eeruf_modules::{Air, Beam, Module, Piston};
 /// Directions and distances at which sound is turned back between two sensors.
 const DIRECTIONS: u32 = 180;
 const DISTANCES: u32 = 40;
-/// The nearest of these distances, in metres.
+/// Least distance, in metres.
 const NEAREST_M: f64 = 0.01;
 /// Amplitude that a narrow panel returns at most, relative to a wall (`docs/explanation/physics.md`).
 const LOUDEST_PANEL: f64 = 1.35;
@@ -22,7 +22,7 @@ struct Heard<'a> {
     heading: (f64, f64),
     module: &'a Module,
     absorption_db_per_m: f64,
-    /// The amplitude that is just heard now and then.
+    /// Amplitude at the threshold of hearing.
     floor: f64,
     /// The most that leaves or arrives at this many degrees off the axis, or more.
     pattern: Vec<f64>,

@@ -17,9 +17,9 @@ pub enum LayoutKey {
     #[default]
     #[serde(skip)]
     Unsaid,
-    /// By its name.
+    /// A layout by its name.
     Named(LayoutName),
-    /// By its pairs of neighbours, sensors from 0.
+    /// A layout by its pairs of neighbours, sensors from 0.
     Pairs(Vec<(usize, usize)>),
 }
 

@@ -11,7 +11,7 @@ use eeruf_modules::Module;
 use crate::each::Each;
 use crate::ring::{RingFile, RingSpec};
 
-/// A robot with sensors farther than this from its middle, in metres, is a sign.
+/// Distance from the robot's middle, in metres, beyond which a sensor is a sign of other units.
 const LARGE_M: f64 = 5.0;
 /// A module that is to see this many times as far as it does.
 const FARTHER: f64 = 2.5;

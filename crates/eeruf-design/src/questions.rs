@@ -19,9 +19,9 @@ pub struct Fit {
     /// The largest `t_delta` found; of the sensor with the largest, where sensors have their own and each grows by the
     /// same.
     pub t_delta: Option<Micros>,
-    /// No schedule of that period has a larger `t_delta`; `None` if none meets the other needs, or if it is unknown.
+    /// Proven bound of `t_delta` with that period; `None` if none meets the other needs, or if it is unknown.
     pub bound: Option<Micros>,
-    /// Some: whether the ring's needs are met by a schedule of that period. `None` if that is not decided.
+    /// True if a schedule of that period meets the ring's needs; `None` if that is not decided.
     pub fits: Option<bool>,
     /// True if no schedule of that period has a larger `t_delta`.
     pub proven: bool,
@@ -49,7 +49,7 @@ pub struct CurvePoint {
     pub value: Micros,
     /// The shortest period found; `None` if there is no schedule, as for a robot that is too fast.
     pub period: Option<Micros>,
-    /// No schedule has a shorter period than this.
+    /// Proven bound of the period.
     pub bound: Option<Micros>,
     /// True if no schedule is shorter, or if there is none.
     pub proven: bool,

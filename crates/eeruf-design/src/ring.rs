@@ -102,7 +102,7 @@ pub(crate) struct RingFile {
 pub struct RingSpec {
     /// Number of sensors, 1 to 64.
     pub sensors: usize,
-    /// All times are multiples of this.
+    /// Unit of time: all times are multiples of it.
     pub tick: Micros,
     /// The arrangement.
     pub layout: OwnedLayout,

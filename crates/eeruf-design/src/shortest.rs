@@ -42,7 +42,7 @@ pub struct Shortest {
     pub to_spare: Option<ToSpare>,
     /// True if period and schedule are the atlas's, and nothing was searched.
     pub from_atlas: bool,
-    /// No period is shorter than this by the certificate of the atlas's row.
+    /// Bound of the period by the certificate of the atlas's row.
     pub certified: Option<Micros>,
 }
 

@@ -53,7 +53,7 @@ impl OwnedUneven {
         Ok(owned)
     }
 
-    /// As core takes it.
+    /// Returns the limits in core's form.
     pub fn uneven(&self) -> Uneven<'_> {
         let Self { t_delta, window, refire, intervals, shared_lines, together } = self;
         Uneven { t_delta, window, refire, intervals, shared_lines, together }

@@ -82,7 +82,7 @@ impl Way {
 pub struct How {
     /// The way's name.
     pub way: &'static str,
-    /// All of it in words.
+    /// Description of the way in words.
     pub in_words: String,
     /// Sensors in the order in which they fire while nothing is heard; none for a table.
     pub order: Vec<u8>,

@@ -30,7 +30,7 @@ pub(crate) enum Fault {
 const STALL_AFTER: u32 = PERIODS / 2;
 const STALL: Micros = Micros::from_millis(50);
 
-/// Echo times of the same sound move by no more than this from run to run.
+/// Largest change of an echo time of one sound from run to run.
 const MOST_MOVED: Micros = Micros::new(25);
 
 impl Fault {

@@ -6,9 +6,9 @@
 pub struct Options {
     /// The columns of a text.
     pub table: Table,
-    /// In m/s, for values that are echo times.
+    /// Speed of sound in m/s, for values that are echo times.
     pub speed_of_sound: f64,
-    /// From this range on, in metres, a value of a text means that there was no echo.
+    /// Range in metres from which a value of a text means no echo.
     pub no_echo_m: f64,
     /// Values that mean no echo, in the log's unit, or words. If empty: zero, values below zero, and a ceiling that the
     /// log repeats.

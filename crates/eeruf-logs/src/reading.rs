@@ -33,9 +33,9 @@ pub struct Reading {
     pub radiation: u8,
     /// `field_of_view`, in radians.
     pub field_of_view_rad: f32,
-    /// Nearer than this the sensor cannot measure, in metres.
+    /// Shortest range that the sensor can measure, in metres.
     pub min_range_m: f64,
-    /// From this range on, in metres, a value means that there was no echo.
+    /// Range in metres from which a value means no echo.
     pub max_range_m: f64,
     /// The range in metres as it stands in the log, with what REP 117 makes of infinities.
     pub range_m: f64,

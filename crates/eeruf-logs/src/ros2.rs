@@ -11,7 +11,7 @@ use crate::reading::Reading;
 /// Position and orientation in a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Placement {
-    /// In metres.
+    /// Position in metres.
     pub position: [f64; 3],
     /// A quaternion: x, y, z, w.
     pub orientation: [f64; 4],
@@ -57,12 +57,12 @@ pub enum Shape {
     Cylinder(Placement, f64, f64),
 }
 
-/// Something drawn.
+/// A drawn shape.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Marker {
     /// The frame of its points.
     pub frame: String,
-    /// With the number, its name: a marker replaces the one of the same name.
+    /// Namespace of the number: a marker replaces the one with the same namespace and number.
     pub namespace: String,
     /// The number.
     pub id: i32,
@@ -70,7 +70,7 @@ pub struct Marker {
     pub shape: Shape,
     /// Red, green, blue and opacity, 0 to 1.
     pub colour: [f32; 4],
-    /// In nanoseconds; 0 is for ever.
+    /// Lifetime in nanoseconds; 0 is unlimited.
     pub lifetime_ns: u64,
 }
 

@@ -55,7 +55,7 @@ impl Surveyed {
         self.paths.iter().filter(move |path| (path.sender, path.receiver) == (sender, receiver))
     }
 
-    /// In how many slots a receiver could have heard a sender.
+    /// Returns the number of slots in which a receiver could have heard a sender.
     pub fn slots(&self, sender: u8, receiver: u8) -> u32 {
         self.of_pair(&self.slots, sender, receiver)
     }

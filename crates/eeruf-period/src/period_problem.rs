@@ -33,7 +33,7 @@ pub struct PeriodProblem<'a> {
     pub sensors: usize,
     /// Requirements on the schedule, under [`Criterion::Exact`].
     pub requirements: Requirements<'a>,
-    /// All firing times and the period are multiples of this.
+    /// Unit of time: all firing times and the period are multiples of it.
     pub tick: Micros,
 }
 
@@ -42,7 +42,7 @@ pub struct PeriodProblem<'a> {
 pub struct ShortestPeriod {
     /// A schedule with that period.
     pub schedule: Schedule<MAX_SENSORS>,
-    /// No schedule has a shorter period than this.
+    /// Proven bound of the period.
     pub bound: Micros,
     /// Nodes visited: the same on each machine.
     pub nodes: u64,

@@ -25,7 +25,7 @@ impl Threads {
         Self { number, pool: Mutex::new(None) }
     }
 
-    /// As many threads, started apart from these.
+    /// Returns a setting of as many threads, in a pool apart.
     #[must_use]
     pub const fn others(&self) -> Self {
         Self::new(self.number)

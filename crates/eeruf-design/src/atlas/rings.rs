@@ -9,7 +9,7 @@ use eeruf_period::PeriodProblem;
 /// Neighbourhoods.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Neighbourhood {
-    /// All of each other, as in any short line or ring.
+    /// All sensors are neighbours, as in any short line or ring.
     All,
     /// Any n adjacent sensors of a line.
     Line(u8),
@@ -85,7 +85,7 @@ impl Neighbourhood {
         core::iter::once(Self::All).chain(named).find(|candidate| candidate.layout(sensors).rows(count) == rows)
     }
 
-    /// As a layout of this many sensors.
+    /// Returns the layout of this many sensors.
     #[must_use]
     pub fn layout(self, sensors: u8) -> Layout<'static> {
         match self {

@@ -15,9 +15,9 @@ pub struct Row {
     pub ring: Ring,
     /// The shortest period, or the shortest found.
     pub period: u32,
-    /// No period is shorter than this: the period itself where that is proven.
+    /// Proven bound of the period: the period itself where it is proven shortest.
     pub bound: u32,
-    /// As far as a certificate proves that.
+    /// Bound that a certificate proves.
     pub certified: u32,
     /// The first 32 digits of the certificate's SHA-256; empty where a part of the atlas leaves them out.
     pub hash: String,
@@ -39,7 +39,7 @@ pub fn rows(text: &str) -> impl Iterator<Item = Row> + '_ {
 }
 
 impl Row {
-    /// The schedule, if a tick is so long. `None` if the times are none of a schedule.
+    /// Returns the schedule with ticks of this length. `None` if the times make no schedule.
     #[must_use]
     pub fn schedule(&self, tick: Micros) -> Option<AnySchedule> {
         let time = |ticks: u32| Some(Micros::new(ticks.checked_mul(tick.as_micros())?));

@@ -98,7 +98,7 @@ pub struct FoundPath {
     pub receiver: u8,
     /// Travel time of the sound, in microseconds; of a path that moves, at the middle of its times.
     pub travel_us: f64,
-    /// Standard error of that.
+    /// Standard error of the travel time.
     pub travel_error_us: f64,
     /// Scatter of single readings, rms, in microseconds.
     pub scatter_us: f64,

@@ -9,7 +9,7 @@ use crate::firings::FiringLog;
 pub struct Timing {
     /// Drift of the log's clock against the schedule's (firings come late more and more), in millionths.
     pub drift_ppm: f64,
-    /// Standard error of that.
+    /// Standard error of the drift.
     pub drift_error_ppm: f64,
     /// Scatter of firings around the schedule that drifts so, rms, in microseconds.
     pub jitter_us: f64,
@@ -69,7 +69,7 @@ impl core::error::Error for TimingError {}
 
 /// Clocks of microcontrollers without a crystal are wrong by a few hundredths.
 const MOST_DRIFT: f64 = 0.1;
-/// Firings further from the schedule than this, in microseconds, are of another one.
+/// Distance from the schedule, in microseconds, beyond which a firing is of another one.
 const ELSEWHERE_US: f64 = 1000.0;
 
 /// Holds a log against a fixed schedule: the period in microseconds, and when a sensor (from 0) fires in a phase (from

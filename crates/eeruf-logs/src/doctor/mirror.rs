@@ -21,7 +21,7 @@ pub(crate) struct Mirrored {
     pub(crate) same_us: f64,
 }
 
-/// Echo times that differ by so much come from different walls.
+/// Least difference of echo times from different walls.
 const FAR_US: f64 = 1000.0;
 /// From here to there two echoes are nearly the same, in what counts as the same: the band is three times as wide.
 const NEARLY: [f64; 2] = [1.5, 4.5];

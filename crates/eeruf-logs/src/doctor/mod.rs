@@ -23,7 +23,7 @@ const MOST_READINGS: usize = 1 << 18;
 const FEWEST: u32 = 30;
 /// Readings depend on the lag if chance explains it in 3 of 100,000 sensors.
 const DEVIATIONS: f64 = 4.0;
-/// The least share of the readings that must do so, too.
+/// Least share of readings for a verdict, beside their number.
 const LEAST_SHARE: f64 = 0.05;
 
 /// The verdict of a log on crosstalk.

@@ -27,7 +27,7 @@ pub(crate) struct Scatter {
 }
 
 impl Scatter {
-    /// Two readings of sensors with such scatter that differ by no more are the same, in microseconds.
+    /// Returns the largest difference, in microseconds, at which two readings with such scatter count as equal.
     pub(crate) fn same_us(self, other: Self) -> f64 {
         (3.0 * self.us.hypot(other.us)).max(45.0)
     }

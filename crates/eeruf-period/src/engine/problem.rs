@@ -32,7 +32,7 @@ pub struct Claim {
     pub period: u32,
     /// The firing times in phases a and b, sensor by sensor, in ticks after the phase's start.
     pub fire: [Vec<u32>; 2],
-    /// No period is below this; equal to `period` when the period is the shortest one.
+    /// Proven bound of the period; equal to `period` if that is shortest.
     pub bound: u32,
 }
 

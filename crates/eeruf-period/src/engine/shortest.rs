@@ -14,7 +14,7 @@ pub struct Shortest {
     pub period: u32,
     /// Firing times with this period.
     pub fire: FiringTimes,
-    /// No schedule has a shorter period than this; equal to the period where that is proven.
+    /// Proven bound of the period; equal to the period if that is shortest.
     pub bound: u32,
     /// Nodes visited.
     pub nodes: u64,
@@ -29,7 +29,7 @@ pub struct SoFar {
     pub nodes: u64,
     /// The shortest period found so far.
     pub best: u32,
-    /// No period is below this.
+    /// Proven bound of the period.
     pub bound: u32,
 }
 

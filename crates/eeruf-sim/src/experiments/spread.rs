@@ -15,11 +15,11 @@ pub struct Spread {
     pub p90: f64,
     /// 95 % confidence interval of the median, by bootstrap.
     pub median_95: [f64; 2],
-    /// Where `p90` lies with 95 % confidence, by bootstrap.
+    /// 95 % confidence interval of `p90`, by bootstrap.
     pub p90_95: [f64; 2],
     /// The mean over the runs.
     pub mean: f64,
-    /// Where `mean` lies with 95 % confidence, by bootstrap.
+    /// 95 % confidence interval of `mean`, by bootstrap.
     pub mean_95: [f64; 2],
 }
 

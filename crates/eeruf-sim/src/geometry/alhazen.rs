@@ -10,9 +10,9 @@ pub struct Specular {
     pub point: Point,
     /// Angle of incidence and of reflection, in radians from the normal, 0 to pi/2.
     pub incidence_rad: f64,
-    /// From the source to the point, in metres.
+    /// Distance from the source to the point, in metres.
     pub before_m: f64,
-    /// From the point to the receiver, in metres.
+    /// Distance from the point to the receiver, in metres.
     pub after_m: f64,
 }
 

@@ -88,7 +88,7 @@ pub struct FiringPeriod {
 pub struct OwnError(Box<str>);
 
 impl OwnError {
-    /// With these words.
+    /// Returns an error with this message.
     pub fn new(why: impl Into<String>) -> Self {
         Self(why.into().into())
     }

@@ -35,7 +35,7 @@ impl Default for LabMate {
     }
 }
 
-/// Where a platform is and how it moves. Two driven wheels can only carry it along its heading.
+/// The pose and motion of a platform. Two driven wheels can only carry it along its heading.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Driven {
     /// Place and heading.
@@ -47,7 +47,7 @@ pub struct Driven {
 }
 
 impl Driven {
-    /// At rest.
+    /// Returns a platform at rest.
     pub fn at_rest(pose: Pose) -> Self {
         Self { pose, speed_m_s: 0.0, turn_rad_s: 0.0 }
     }
@@ -96,7 +96,7 @@ impl LabMate {
         state.pose = state.carried(for_s);
     }
 
-    /// From the outline to a point, in metres; negative inside.
+    /// Returns the distance from the outline to a point, in metres; negative inside.
     pub fn clearance_m(&self, pose: &Pose, point: nalgebra::Point2<f64>) -> f64 {
         let half = 0.5 * self.side_m;
         let local = pose.inverse_transform_point(&point);

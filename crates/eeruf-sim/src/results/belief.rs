@@ -18,7 +18,7 @@ pub struct Belief {
     /// Right within the tolerance: an echo at the reference, or silence where the sensor alone hears none.
     #[serde(rename = "belief_right")]
     pub right: f64,
-    /// Nothing believed, or too long ago.
+    /// Share of time without a belief, or with one that is too old.
     pub unknown: f64,
     /// Foreign or stale sound.
     pub phantom: f64,
@@ -74,7 +74,7 @@ impl Readings {
 }
 
 impl Believed {
-    /// The share that it counts to, for this reference.
+    /// Returns the share of `of` that the belief adds to, with this reference.
     fn state<'b>(&self, reference_us: f64, tolerance_us: f64, of: &'b mut Belief) -> &'b mut f64 {
         let off_us = self.t_echo_us - reference_us;
         if off_us.abs() <= tolerance_us || (self.t_echo_us.is_nan() && reference_us.is_nan()) {

@@ -3,16 +3,16 @@
 /// One bounce of a path.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
 pub enum Bounce {
-    /// At the wall with this index.
+    /// A bounce at the wall with this index.
     Wall(u32),
-    /// At the pole with this index.
+    /// A bounce at the pole with this index.
     Pole(u32),
     /// Around the edge with this index, among [`Scene::edges`](super::Scene::edges).
     Edge(u32),
-    /// At the floor. Bounces at floor and ceiling stand after the others, in the order in which the path meets them;
-    /// where it does so between the walls, lengths and heights say.
+    /// A bounce at the floor. Bounces at floor and ceiling stand after the others, in the order in which the path meets
+    /// them; where it does so between the walls, lengths and heights say.
     Floor,
-    /// At the ceiling.
+    /// A bounce at the ceiling.
     Ceiling,
 }
 

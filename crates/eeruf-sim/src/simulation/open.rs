@@ -45,7 +45,7 @@ pub struct Simulation {
     robots: usize,
     /// In true nanoseconds.
     now: u64,
-    /// All events before this have happened: those of now too, if one of them gave a reading.
+    /// Time before which all events have happened.
     happened: u64,
     /// The world with the scene of now, and since when.
     place: (Arc<World>, u64),
@@ -223,7 +223,7 @@ impl Simulation {
         self.now as f64 * 1e-9
     }
 
-    /// From now on a robot goes ahead at `v_m_s` and turns at `w_rad_s`, counter-clockwise, whatever the world says.
+    /// Lets a robot go ahead at `v_m_s` and turn at `w_rad_s`, counter-clockwise, from now on, whatever the world says.
     ///
     /// # Errors
     /// No such robot, or more than 50 m/s or rad/s.
@@ -290,7 +290,7 @@ impl Simulation {
         changed.map_err(|error| SimulationError::change(robot, method, error))
     }
 
-    /// From now on sound travels among these walls and poles and in this air: obstacles have moved. Sound that is on
+    /// Changes walls, poles and air from now on, as obstacles move. Sound that is on
     /// its way arrives as it would have before. Whether robots stand free in it is not checked.
     ///
     /// # Errors
@@ -318,7 +318,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Where a robot is now, and how fast it goes.
+    /// Returns the pose and speed of a robot now.
     ///
     /// # Errors
     /// No such robot.

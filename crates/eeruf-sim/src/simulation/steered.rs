@@ -67,7 +67,7 @@ impl Steered {
         }
     }
 
-    /// Returns true if it is known where a robot was then.
+    /// Returns true if the robot's pose at a time is known.
     pub(super) fn knows(&self, robot: usize, then: u64) -> bool {
         self.legs[robot].known_since <= then
     }

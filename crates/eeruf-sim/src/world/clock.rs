@@ -28,7 +28,7 @@ pub(crate) struct Ticker {
     stretches: [Stretch; 3],
 }
 
-/// A time in which a clock goes evenly.
+/// A stretch of time with a constant clock rate.
 #[derive(Clone, Copy, Debug)]
 struct Stretch {
     /// Start, in true nanoseconds.

@@ -220,7 +220,7 @@ impl Robot {
         self
     }
 
-    /// Returns the robot whose sensors are deaf for so long after firing, one each.
+    /// Sets the blanking time of each sensor.
     #[must_use]
     pub fn with_blankings(mut self, blankings: Vec<Micros>) -> Self {
         self.blanking = blankings.iter().copied().min().unwrap_or(self.blanking);

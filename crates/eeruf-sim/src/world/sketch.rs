@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 /// files.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sketch {
-    /// The longest time that a sensor is waited for; `None` for as long as it listens.
+    /// Longest wait for a sensor; `None` for as long as it listens.
     pub timeout: Option<Micros>,
     /// The time from an echo, or from the time-out, to the next trigger.
     pub pause: Micros,

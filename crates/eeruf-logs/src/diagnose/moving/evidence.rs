@@ -6,7 +6,7 @@ use super::super::timeline::{Heard, Timeline};
 use super::Guess;
 use super::prior::{MOST_RATE, Rates};
 
-/// Readings so long before and after are asked, in milliseconds.
+/// Time before and after a reading, in milliseconds, whose readings count as evidence.
 const ASKED_MS: f64 = 400.0;
 /// Change of a rate, in microseconds for each millisecond and second: a robot at 1 m/s that passes a thing at 1 m.
 const BEND: f64 = 2.0;
@@ -31,7 +31,7 @@ enum Meets {
 
 /// A reading that may lie on the line.
 struct Trial {
-    /// From the reading that the line goes through, in milliseconds.
+    /// Time since the reading that the line goes through, in milliseconds.
     since_ms: f64,
     /// From what a line without a rate predicts to the edge, in microseconds; infinite without echo.
     off_us: f64,

@@ -7,7 +7,7 @@ use super::super::timeline::{Heard, Timeline};
 use super::super::{FoundPath, Named, Settings};
 use super::prior::MOST_RATE;
 
-/// A line ends where nothing came along it for so long, in microseconds.
+/// Pause after which a line ends, in microseconds.
 const ENDS_US: i64 = 500_000;
 /// Fewer readings are no line.
 const FEWEST: usize = 3;

@@ -29,7 +29,7 @@ pub struct Point {
 pub enum Operating {
     /// The least t95 with no more false stops than asked for.
     At(Point),
-    /// None has as few; this one has the fewest.
+    /// No point has as few; this one has the fewest.
     None(Point),
 }
 

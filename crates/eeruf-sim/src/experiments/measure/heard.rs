@@ -19,7 +19,7 @@ pub(super) struct Heard {
     pub(super) ready_s: f64,
     /// Position of the sensor when it fired.
     pub(super) seen: Pose,
-    /// NaN for silence.
+    /// Echo time; NaN for silence.
     pub(super) t_echo_us: f64,
     /// The reading that the sensor would have had alone.
     pub(super) reference_us: f64,
@@ -71,7 +71,7 @@ pub enum Control {
     Genie,
     /// One sensor is masked.
     Masked,
-    /// All is known 300 ms later.
+    /// Readings arrive 300 ms late.
     Late,
     /// One reading in twenty is a sound from outside.
     Foreign,

@@ -49,7 +49,7 @@ pub struct Place {
 /// Figures of one way in all rooms: by setting, in the order of [`Setting::ALL`], and room; or why it cannot fire.
 pub type BySetting = Result<Vec<Vec<Sight>>, String>;
 
-/// All ways under one condition.
+/// Results of all ways under one condition.
 #[derive(Clone, Debug)]
 pub struct Under {
     /// The condition.

@@ -25,7 +25,7 @@ const BLIND: f64 = 0.05;
 /// One trial's figures of one way and setting.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sight {
-    /// From the thing's appearing to the first belief in it, in ms; infinite for never, NaN without a thing.
+    /// Time from the thing's appearance to the first belief in it, in ms; infinite for never, NaN without a thing.
     pub latency_ms: f64,
     /// False stops before it appeared.
     pub false_stops: u32,

@@ -109,7 +109,7 @@ pub struct RoomFigures {
     pub right_echoes_per_s_95: [f64; 2],
     /// Share of what was accepted that was foreign sound and wrong.
     pub foreign_of_believed: f64,
-    /// The largest of these shares.
+    /// Largest share of foreign sound among what a sensor believed.
     pub foreign_of_believed_worst: f64,
     /// Share of what was accepted that was the sensor's own sound and wrong.
     pub own_wrong_of_believed: f64,
@@ -128,7 +128,7 @@ pub struct JudgedWay {
     pub rooms: Result<Vec<RoomFigures>, String>,
     /// Least and largest number of blind sensors in 90 % of all rooms judged. Zeros if it cannot fire the ring.
     pub blind_90: [f64; 2],
-    /// [`echoes_against`](Self::echoes_against) the first way lies here with 95 % confidence: for rooms of these kinds,
+    /// 95 % confidence interval of [`echoes_against`](Self::echoes_against) the first way: for rooms of these kinds,
     /// by how much they differ. None if one of the two cannot fire the ring, or no kind has two rooms.
     pub times_95: Option<[f64; 2]>,
 }

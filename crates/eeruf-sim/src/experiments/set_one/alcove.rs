@@ -18,9 +18,9 @@ pub const RADIUS_M: f64 = 0.30;
 /// `y = depth_m`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Alcove {
-    /// From side wall to side wall, in metres.
+    /// Width from side wall to side wall, in metres.
     pub width_m: f64,
-    /// From the mouth to the back wall, in metres.
+    /// Depth from the mouth to the back wall, in metres.
     pub depth_m: f64,
     /// Position of the robot's middle, in metres.
     pub robot_m: [f64; 2],

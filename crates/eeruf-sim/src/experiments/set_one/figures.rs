@@ -58,7 +58,7 @@ pub struct Figures {
     pub right_echoes_per_s: Option<Spread>,
     /// Mean number of sensors that had fewer than 5 % of their readings accepted.
     pub starved: f64,
-    /// Where `starved` lies with 95 % confidence, by bootstrap.
+    /// 95 % confidence interval of `starved`, by bootstrap.
     pub starved_95: [f64; 2],
     /// Mean number of sensors that were right under 5 % of the times they fired.
     pub blind: f64,

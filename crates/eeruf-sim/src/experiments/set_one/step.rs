@@ -22,9 +22,9 @@ const MOVED_US: f64 = 1000.0;
 /// never.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Steps {
-    /// For the steps nearer.
+    /// Periods after the steps nearer.
     pub nearer: Vec<Option<u32>>,
-    /// For the steps away.
+    /// Periods after the steps away.
     pub farther: Vec<Option<u32>>,
     /// For the first step, which brings the wall nearer than it ever was: how many milliseconds after it the first
     /// right reading was heard and accepted.
@@ -42,7 +42,7 @@ pub struct Latency {
     pub p90: Option<u32>,
     /// Share of the steps that are not seen within 64 periods.
     pub never: f64,
-    /// Where `never` lies with 95 % confidence, by bootstrap over steps.
+    /// 95 % confidence interval of `never`, by bootstrap over steps.
     pub never_95: [f64; 2],
 }
 

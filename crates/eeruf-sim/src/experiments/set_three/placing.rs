@@ -51,7 +51,7 @@ pub enum Arrangement {
 /// Robots of one make near each other.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Placing {
-    /// Where they are.
+    /// Surroundings of the robots.
     pub place: Site,
     /// The robots' arrangement.
     pub arrangement: Arrangement,

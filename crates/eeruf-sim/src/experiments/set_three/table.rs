@@ -82,10 +82,10 @@ pub struct SetThree {
     pub runs: Vec<Vec<Run>>,
 }
 
-/// Some of the placings.
+/// A group of placings.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Group {
-    /// Where they are; none for anywhere.
+    /// Surroundings of the robots; `None` for any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub place: Option<Site>,
     /// The robots' arrangement; none for any.

@@ -14,9 +14,9 @@ pub struct Figures {
     pub finished: usize,
     /// 95 % confidence interval of the share of finished courses, by Wilson's interval.
     pub finished_95: [f64; 2],
-    /// In how many the robot touched something.
+    /// Number of courses in which the robot touched something.
     pub contacts: usize,
-    /// In how many it was stuck, or too slow.
+    /// Number of courses in which it was stuck, or too slow.
     pub timed_out: usize,
     /// Way over time of all courses together, in m/s.
     pub mean_speed_m_s: f64,

@@ -28,7 +28,7 @@ pub struct SetTwoOptions {
     pub methods: Vec<Entry>,
     /// Schedule of [`Method::EerufBest`], see [`best_schedule_for`](crate::best_schedule_for).
     pub best: Option<ShortestPeriod>,
-    /// Where another robot stands that fires 24 times in 80 ms, if there is one.
+    /// Position of another robot that fires 24 times in 80 ms, if there is one.
     pub second_robot: Option<Point>,
     /// The platform.
     pub labmate: LabMate,

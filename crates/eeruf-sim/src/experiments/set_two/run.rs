@@ -17,15 +17,15 @@ pub enum Ending {
 /// Pose of a robot at a time.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TrackPoint {
-    /// In seconds.
+    /// Time in seconds.
     pub time_s: f64,
-    /// In metres.
+    /// Position along x, in metres.
     pub x_m: f64,
-    /// In metres.
+    /// Position along y, in metres.
     pub y_m: f64,
-    /// In radians.
+    /// Heading in radians.
     pub heading_rad: f64,
-    /// In m/s.
+    /// Speed in m/s.
     pub speed_m_s: f64,
 }
 

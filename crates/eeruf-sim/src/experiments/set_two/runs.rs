@@ -46,14 +46,14 @@ pub struct SetTwo {
     pub bodies: bool,
     /// Number of courses.
     pub seeds: u64,
-    /// Where another robot stood and fired, in metres.
+    /// Position of another robot that fired, in metres.
     pub second_robot_m: Option<[f64; 2]>,
     /// The platform's highest speed in m/s.
     pub speed_m_s: f64,
     /// The methods in the order asked for, with their figures.
     #[serde(serialize_with = "by_name")]
     pub methods: Vec<(String, Figures)>,
-    /// For each method, what came of each course.
+    /// Outcomes of each method, course by course.
     #[serde(skip)]
     pub runs: Vec<Vec<Run>>,
 }
@@ -178,7 +178,7 @@ pub struct SpeedStep {
     /// For each method, the share of courses finished without contact.
     #[serde(serialize_with = "by_name", rename = "finished_of_all")]
     pub finished: Vec<(String, f64)>,
-    /// For each method, where that share lies with 95 % confidence, by Wilson's interval.
+    /// 95 % confidence interval of that share for each method, by Wilson.
     #[serde(serialize_with = "by_name")]
     pub finished_95: Vec<(String, [f64; 2])>,
     /// For each method, the mean speed in m/s.

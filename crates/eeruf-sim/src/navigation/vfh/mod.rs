@@ -69,7 +69,7 @@ pub struct Valley {
     pub sectors: usize,
 }
 
-/// Where to steer.
+/// A direction to steer in, and a speed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Steering {
     /// The direction.
@@ -161,7 +161,7 @@ impl Vfh {
         Some(Steering { direction_rad, valley: nearest, trapped })
     }
 
-    /// All steps at once: where to steer from `place` to come to `target`.
+    /// Runs all steps: returns where to steer from `place` to come to `target`.
     ///
     /// ```
     /// use eeruf_sim::{Himm, Point, Vfh};

@@ -14,7 +14,7 @@ pub(crate) struct Growth<'a> {
     pub(crate) poles: &'a [Pole],
     /// Triangles in which the poles lie that are looked for.
     pub(crate) pole_triangles: &'a [(u32, u32)],
-    /// Poles are looked for in beams of lower order than this.
+    /// Order below which beams look for poles.
     pub(crate) pole_order: u32,
     pub(crate) max_order: u32,
     pub(crate) max_length_m: f64,

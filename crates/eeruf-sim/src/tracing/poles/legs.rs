@@ -17,7 +17,7 @@ pub(super) struct Leg {
     pub(super) turn: f64,
     /// The square of all that is left of the amplitude at the pole but spreading and air, at most.
     pub(super) square: f64,
-    /// From the image to the pole's axis, and at least to its surface, in metres.
+    /// Distance from the image to the pole's axis, and at least to its surface, in metres.
     pub(super) far_m: f64,
     pub(super) least_m: f64,
     /// The beam's cones through triangles in which the pole stands.

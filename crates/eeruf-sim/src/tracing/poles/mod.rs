@@ -242,7 +242,7 @@ impl PoleSearch {
         self.from_source = from_source;
     }
 
-    /// True to end; looked at now and then.
+    /// Returns true if the search should end.
     fn is_stopped(&self, stop: &Stop) -> bool {
         self.tried.is_multiple_of(TRIED_PER_LOOK) && stop.is_stopped()
     }

@@ -150,7 +150,7 @@ impl WorldParts {
         Ok(Self { scene, robots, noise, physics, max_order: file.max_order, seed: file.seed, faults })
     }
 
-    /// Writes the file that says all this; see [`world_file`].
+    /// Writes this world as a scene file; see [`world_file`].
     pub fn to_toml(&self) -> String {
         world_file(&self.scene, &self.robots, &self.noise, &self.physics, self.max_order, self.seed, &self.faults)
     }

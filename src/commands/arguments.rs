@@ -1,6 +1,6 @@
 //! Errors in the arguments, as the same report as all others: `thing: value; expected X`, then the next command.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use clap::builder::{PathBufValueParser, TypedValueParser};
@@ -26,24 +26,27 @@ pub(crate) fn seconds(text: &str) -> Result<Duration, String> {
         .ok_or_else(|| "expected seconds above 0".to_owned())
 }
 
-/// Parses the name of a picture: SVG or PNG by its ending, SVG without one.
-pub(crate) fn picture() -> impl TypedValueParser<Value = PathBuf> {
-    PathBufValueParser::new().try_map(|file| {
-        let ending = file.extension().map(|ending| ending.to_string_lossy().to_lowercase());
+/// Parses the name of a picture: SVG or PNG by its ending; without one the picture `name` in a folder.
+pub(crate) fn picture(name: &'static str) -> impl TypedValueParser<Value = PathBuf> {
+    pictures().map(move |file| if is_picture(&file) { file } else { file.join(name).with_extension("svg") })
+}
+
+/// Parses the name of a folder of pictures, or of one picture, which ends in .svg or .png.
+pub(crate) fn pictures() -> impl TypedValueParser<Value = PathBuf> {
+    PathBufValueParser::new().try_map(|name| {
+        let ending = name.extension().map(|ending| ending.to_string_lossy().to_lowercase());
         match ending.as_deref() {
-            None | Some("svg" | "png") => Ok(file),
-            Some(_) => Err("expected a name that ends in .svg or .png"),
+            Some("jpg" | "jpeg" | "pdf" | "gif" | "eps") => {
+                Err("expected a folder, or a name that ends in .svg or .png")
+            }
+            _ => Ok(name),
         }
     })
 }
 
-/// Parses the name of a folder of pictures.
-pub(crate) fn picture_folder() -> impl TypedValueParser<Value = PathBuf> {
-    PathBufValueParser::new().try_map(|folder| {
-        let ending = folder.extension().map(|ending| ending.to_string_lossy().to_lowercase());
-        let is_picture = ending.is_some_and(|ending| ["svg", "png", "jpg", "jpeg", "pdf"].contains(&&*ending));
-        if is_picture { Err("expected the name of a folder, for several pictures") } else { Ok(folder) }
-    })
+/// Returns true for the name of one picture.
+pub(crate) fn is_picture(name: &Path) -> bool {
+    name.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("svg") || ending.eq_ignore_ascii_case("png"))
 }
 
 /// Options of earlier versions, and what does their work.

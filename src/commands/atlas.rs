@@ -29,7 +29,7 @@ pub(crate) struct Args {
     #[arg(value_name = "FILE")]
     file: Option<PathBuf>,
     /// Draw period over number of sensors, as SVG or, if the name ends in .png, as PNG
-    #[arg(long, value_name = "FILE", value_parser = picture())]
+    #[arg(long, value_name = "FILE", value_parser = picture("atlas"))]
     svg: Option<PathBuf>,
     /// Search the open rings of FILE again, with this number of nodes each, fewer for more than 16 sensors, and write
     /// new certificates; by default, none is searched

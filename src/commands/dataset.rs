@@ -8,6 +8,7 @@ use eeruf_sim::{Method, Options, Physics, World, simulate_while, sweep, world_fi
 use serde_json::json;
 
 use super::Answer;
+use crate::console::tell;
 use crate::files::error::InputError;
 use crate::files::truth::{readings_csv, track_csv};
 use crate::files::write::{make_folder, write};
@@ -88,6 +89,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         "licence": "CC0-1.0",
     });
     write(&args.out.join("dataset.json"), to_json(&about) + "\n")?;
+    tell(format!("{} files of readings in {}.\n", jobs.len(), args.out.display()))?;
     Ok(Answer::Yes)
 }
 

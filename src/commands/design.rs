@@ -58,7 +58,7 @@ pub(crate) struct Args {
     #[arg(long, conflicts_with = "emit")]
     json: bool,
     /// Draw the timing of two periods, as SVG or, if the name ends in .png, as PNG
-    #[arg(long, hide_short_help = true, value_name = "FILE", value_parser = picture())]
+    #[arg(long, hide_short_help = true, value_name = "FILE", value_parser = picture("timing"))]
     svg: Option<PathBuf>,
     /// Write a certificate that no period is shorter, or shorter than the bound where the search ended early; for
     /// checker/check_period.py
@@ -74,7 +74,7 @@ pub(crate) struct Args {
     budget: Option<u64>,
     /// Find what fits into this period, in microseconds: whether the ring's needs do, and the largest T_delta; by
     /// default the shortest period. Exit code 1 if they do not, 3 if that was not decided
-    #[arg(long, value_name = "US", conflicts_with_all = ["certificate", "curve"])]
+    #[arg(long, hide_short_help = true, value_name = "US", conflicts_with_all = ["certificate", "curve"])]
     #[arg(value_parser = clap::value_parser!(u32).range(1..))]
     period: Option<u32>,
     /// Print the shortest period for 20 values of one need, from a tenth of the ring's own to twice as much; by default
@@ -96,7 +96,7 @@ pub(crate) struct Args {
     #[arg(long, conflicts_with_all = ["period", "curve", "program", "period_only"])]
     all: bool,
     /// Find the shortest period and judge nothing in rooms
-    #[arg(long, conflicts_with_all = ["rooms", "places", "first", "wrong", "driving"])]
+    #[arg(long, hide_short_help = true, conflicts_with_all = ["rooms", "places", "first", "wrong", "driving"])]
     period_only: bool,
     #[command(flatten)]
     program: ProgramArgs,

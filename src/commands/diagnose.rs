@@ -1,10 +1,11 @@
 //! `eeruf diagnose`: what is wrong with a ring, from its own log.
 
+use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 
 use eeruf_core::{Micros, Phase};
 use eeruf_files::Kind;
-use eeruf_logs::{FiringLog, Settings, Timing, diagnose, timing};
+use eeruf_logs::{FiringLog, Settings, Timing, diagnose_while, timing};
 use eeruf_sim::AnySchedule;
 
 use super::arguments::picture;
@@ -14,6 +15,7 @@ use crate::files::error::InputError;
 use crate::files::implausible::read_firings;
 use crate::files::toml::read_schedule;
 use crate::report::diagnose::{DiagnosisReport, describe, json, who_fools_whom};
+use crate::report::watch::Watch;
 
 /// Find in a ring's own log which sensors fool each other, and what is broken.
 ///
@@ -47,7 +49,7 @@ pub(crate) struct Args {
     #[arg(long, default_value_t = 343.2, value_name = "M/S", value_parser = positive)]
     speed_of_sound: f64,
     /// Draw who fools whom, as SVG or, if the name ends in .png, as PNG
-    #[arg(long, value_name = "FILE", value_parser = picture())]
+    #[arg(long, value_name = "FILE", value_parser = picture("pairs"))]
     svg: Option<PathBuf>,
     /// Print one JSON object
     #[arg(long)]
@@ -79,7 +81,10 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         ..measured
     };
     let timing = timing_of(args, &log)?;
-    let diagnosis = diagnose(&log, &settings);
+    let watch = RefCell::new(Watch::new());
+    let keep_going = || watch.borrow_mut().go_on(|| format!("{} firings", log.firings.len()));
+    let diagnosis = diagnose_while(&log, &settings, &keep_going);
+    drop(watch);
     let found = DiagnosisReport {
         file: &args.file,
         log: &log,
@@ -98,7 +103,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     Ok(if diagnosis.faults.is_empty() { Answer::Yes } else { Answer::No })
 }
 
-/// When a sensor fires in a phase, in microseconds.
+/// Returns a function that gives the time of a sensor in a phase, in microseconds.
 fn fires_at(schedule: &AnySchedule) -> impl Fn(u8, u8) -> Option<u32> {
     |sensor, phase| {
         let fires = if phase < 2 { schedule.t_fire(Phase(phase), sensor.into()) } else { None };

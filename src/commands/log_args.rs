@@ -2,20 +2,22 @@
 
 use std::path::Path;
 
-use eeruf_logs::{FieldChoice, Options, RangeUnit, Report, Table, TimeUnit};
+use eeruf_files::FileError;
+use eeruf_logs::{FieldChoice, Options, RangeUnit, Reading, Report, Table, TimeUnit, read_log};
 
 use crate::files::error::InputError;
 use crate::files::implausible::warn;
+use crate::report::watch::Watch;
 
 /// Options for reading a log. What is not given is guessed, and `eeruf logs` lists each guess.
 #[derive(Clone, clap::Args)]
 #[command(next_help_heading = "The log")]
 pub(crate) struct LogArgs {
     /// Speed of sound in m/s, to turn ranges back into echo times
-    #[arg(long, default_value_t = 343.2, value_name = "M/S", value_parser = positive)]
+    #[arg(long, hide_short_help = true, default_value_t = 343.2, value_name = "M/S", value_parser = positive)]
     pub(crate) speed_of_sound: f64,
     /// Text: the range in metres from which on a value means that there was no echo
-    #[arg(long, default_value_t = 5.0, value_name = "M", value_parser = positive)]
+    #[arg(long, hide_short_help = true, default_value_t = 5.0, value_name = "M", value_parser = positive)]
     no_echo_m: f64,
     /// Text: a value that means no echo, a number in the log's unit or a word; may be given several times. By default
     /// 0, numbers below 0, and a greatest number that repeats
@@ -29,24 +31,24 @@ pub(crate) struct LogArgs {
     #[arg(long, value_name = "COLUMN")]
     time: Option<String>,
     /// Text: the unit of the time; by default guessed
-    #[arg(long, value_name = "UNIT")]
+    #[arg(long, hide_short_help = true, value_name = "UNIT")]
     time_unit: Option<TimeName>,
     /// Text: a column with ranges; may be given several times; by default guessed
     #[arg(long, value_name = "COLUMN")]
     range: Vec<String>,
     /// Text: the unit of the ranges; us are microseconds from firing to echo; by default guessed
-    #[arg(long, value_name = "UNIT")]
+    #[arg(long, hide_short_help = true, value_name = "UNIT")]
     range_unit: Option<RangeName>,
     /// Text: the column that says whose reading a row is; needs one column with ranges; by default
     /// guessed
-    #[arg(long, value_name = "COLUMN")]
+    #[arg(long, hide_short_help = true, value_name = "COLUMN")]
     sensor: Option<String>,
     /// Bags: read this topic only, whatever its type; may be given several times; by default all topics with ranges
     #[arg(long, value_name = "TOPIC")]
     topic: Vec<String>,
     /// Bags: read numbers of a field as ranges in a unit, as `--field /sonars distance_mm[] mm`; by default
     /// ranges are messages of their own types
-    #[arg(long, num_args = 3, value_names = ["TOPIC", "FIELD", "UNIT"])]
+    #[arg(long, hide_short_help = true, num_args = 3, value_names = ["TOPIC", "FIELD", "UNIT"])]
     field: Vec<String>,
 }
 
@@ -131,6 +133,22 @@ impl LogArgs {
     }
 }
 
+/// Reads a log, and shows how far it has come.
+pub(crate) fn read_shown(
+    file: &Path,
+    options: &Options,
+    mut each: impl FnMut(&Report, &Reading),
+) -> Result<Report, FileError> {
+    let (mut watch, mut count) = (Watch::unstoppable(), 0_u64);
+    read_log(file, options, |report, reading| {
+        count += 1;
+        if count.is_multiple_of(4096) {
+            watch.go_on(|| format!("{count} readings"));
+        }
+        each(report, reading);
+    })
+}
+
 /// Warns of what was read and seems wrong.
 ///
 /// # Errors
@@ -151,10 +169,12 @@ pub(crate) fn tell_damage(file: &Path, report: &Report) -> Result<(), InputError
         }
     }
     if report.sensors.is_empty() {
-        let found = match &left_out(report)[..] {
-            [] => "nothing".to_owned(),
-            found => found.join("; "),
-        };
+        let mut found = left_out(report);
+        // Of a text the columns say more than its form.
+        if report.skipped.iter().any(|topic| topic.why.contains("--range")) {
+            found.retain(|said| said.contains("--range"));
+        }
+        let found = if found.is_empty() { "nothing".to_owned() } else { found.join("; ") };
         let message = format!("{}: no sensors; expected ranges; found {found}", report.form);
         return Err(InputError::new(file, message));
     }

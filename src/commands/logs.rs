@@ -1,19 +1,21 @@
 //! `eeruf logs`: whether sensors read each other's sound, from whatever log there is.
 
+use std::cell::RefCell;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use eeruf_files::Kind;
-use eeruf_logs::{Doctor, Examination, FiringLog, Pattern, Reading, Report, Settings, Verdict, diagnose, read_log};
+use eeruf_logs::{Doctor, Examination, FiringLog, Pattern, Reading, Report, Settings, Verdict, diagnose_while};
 use serde::Serialize;
 use serde_json::{Value, json as object};
 
-use super::log_args::{LogArgs, left_out, tell_damage, warn_of_log};
+use super::log_args::{LogArgs, left_out, read_shown, tell_damage, warn_of_log};
 use super::{Answer, diagnose as by_schedule, replay, survey};
 use crate::console::{print_line, tell};
 use crate::files::error::InputError;
 use crate::report::json::to_json;
 use crate::report::table::markdown;
+use crate::report::watch::Watch;
 
 /// Do the sensors of a log read each other's sound? The answer, whom it concerns, what to do, and why.
 ///
@@ -95,7 +97,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let mut sensors: Vec<Sensor> = vec![];
     let options = args.log.options()?;
     let mut doctor = Doctor::new(options.speed_of_sound);
-    let report = read_log(&args.file, &options, |report, reading| {
+    let report = read_shown(&args.file, &options, |report, reading| {
         doctor.push(reading);
         sensors.resize_with(report.sensors.len(), Sensor::default);
         sensors[reading.sensor].count(reading);
@@ -127,7 +129,10 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
 fn by_firings(log: &FiringLog, names: &[String], found: &mut Examination) {
     /// A sensor is fooled if this share of its readings is another's sound, surely.
     const FOOLED: f64 = 0.05;
-    let diagnosis = diagnose(log, &Settings::of(log));
+    let watch = RefCell::new(Watch::new());
+    let keep_going = || watch.borrow_mut().go_on(|| format!("{} firings", log.firings.len()));
+    let diagnosis = diagnose_while(log, &Settings::of(log), &keep_going);
+    drop(watch);
     // Names in such a log are the numbers of its sensors.
     let place = |sensor: u8| names.iter().position(|name| *name == sensor.to_string());
     for of in diagnosis.hearing.iter().filter(|of| of.foreign.value() >= FOOLED) {

@@ -127,7 +127,7 @@ fn show<T: Serialize>(
 #[derive(Subcommand)]
 pub(crate) enum Verb {
     #[command(after_help = help!(
-        "design rings/paper-12.toml --emit rust",
+        "design rings/hc-sr04-8.toml --program arduino",
         "0 a schedule; 1 none meets the needs; 2 bad input; 3 not decided (--period)"
     ))]
     Design(design::Args),

@@ -4,10 +4,10 @@ use std::path::{Path, PathBuf};
 
 use eeruf_core::{Micros, ReadingKind};
 use eeruf_files::Kind;
-use eeruf_logs::{Counted, Judging, McapWriter, RangeJudge, Report, read_log, replay_flow};
+use eeruf_logs::{Counted, Judging, McapWriter, RangeJudge, Report, replay_flow};
 
 use super::arguments::picture;
-use super::log_args::{LogArgs, left_out, tell_damage, warn_of_log};
+use super::log_args::{LogArgs, left_out, read_shown, tell_damage, warn_of_log};
 use super::{Answer, show};
 use crate::console::{print_line, tell};
 use crate::files::error::InputError;
@@ -49,7 +49,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Draw what happened to each sensor over time, as SVG or, if the name ends in .png, as PNG
-    #[arg(long, value_name = "FILE", value_parser = picture())]
+    #[arg(long, value_name = "FILE", value_parser = picture("readings"))]
     svg: Option<PathBuf>,
     /// Print one JSON object
     #[arg(long)]
@@ -75,7 +75,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     }
     let mut judging = judging(args)?;
     let (mut kinds, mut failed) = (Vec::<Vec<ReadingKind>>::new(), None);
-    let report = read_log(&args.file, &args.log.options()?, |report, reading| {
+    let report = read_shown(&args.file, &args.log.options()?, |report, reading| {
         if failed.is_some() {
             return;
         }

@@ -41,7 +41,7 @@ pub(crate) struct RoomArgs {
     #[arg(long, hide_short_help = true, value_name = "PERCENT", value_parser = percent)]
     wrong: Option<f64>,
     /// Let the robot drive through the rooms at the ring's speed_m_s, or 0.3 m/s
-    #[arg(long)]
+    #[arg(long, hide_short_help = true)]
     driving: bool,
 }
 

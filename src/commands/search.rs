@@ -95,7 +95,7 @@ fn within<T>(nodes: u64, watch: &mut Watch, search: impl FnOnce(&mut Budget<'_>)
     search(&mut Budget::nodes_at_most(nodes).watched(WATCHED_EVERY, &mut watcher))
 }
 
-/// Why there is no table, in a line.
+/// Returns the reason why there is no table, in a line.
 fn why_none(search: &WaitSearch, memory: &mut [u32], watch: &mut Watch) -> Result<String, SearchError> {
     Ok(format!("{}\n", within(REASON_BUDGET, watch, |budget| search.why_none(memory, budget))?))
 }

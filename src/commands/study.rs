@@ -9,7 +9,7 @@ use eeruf_sim::{
     Method, Options, Physics, SimulationError, Sketch, World, shortest_schedule_for, simulate_while, sweep,
 };
 
-use super::arguments::picture_folder;
+use super::arguments::{is_picture, pictures};
 use super::methods::chosen;
 use super::rooms::{self, RoomArgs};
 use super::{Answer, STUDY, show};
@@ -20,7 +20,7 @@ use crate::files::mcap::{Stage, write_mcap};
 use crate::files::toml::read_world;
 use crate::report::study::found::Study;
 use crate::report::study::json::StudyJson;
-use crate::report::study::{pictures, text};
+use crate::report::study::{pictures as drawing, text};
 use crate::report::three::Three;
 use crate::report::watch::Watch;
 
@@ -46,11 +46,11 @@ pub(crate) struct Args {
     /// 250 if anything moves
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     periods: Option<u32>,
-    /// Draw SVG pictures of all methods into this folder
-    #[arg(long, value_name = "DIR", value_parser = picture_folder())]
+    /// Draw SVG pictures of all methods into this folder; or their comparison alone, if the name ends in .svg or .png
+    #[arg(long, value_name = "DIR|FILE", value_parser = pictures())]
     svg: Option<PathBuf>,
     /// Draw the same pictures as PNG
-    #[arg(long, hide_short_help = true, value_name = "DIR", value_parser = picture_folder())]
+    #[arg(long, hide_short_help = true, value_name = "DIR|FILE", value_parser = pictures())]
     png: Option<PathBuf>,
     /// Write every firing of the first robot and what it heard as CSV, or MCAP if the name ends in .mcap, for `eeruf
     /// diagnose`; needs one --method
@@ -105,7 +105,7 @@ impl Args {
 }
 
 const PERIODS: u32 = 2000;
-/// Paths have to be found again for every firing then.
+/// Number of periods where something moves: there paths are found again for every firing.
 const PERIODS_IF_MOVING: u32 = 250;
 /// Budget of nodes for the search for `eeruf_best`.
 const BUDGET: u64 = 20_000;
@@ -154,7 +154,11 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let mut drawn = String::new();
     for (folder, ending) in [(&args.svg, "svg"), (&args.png, "png")] {
         if let Some(folder) = folder {
-            let count = pictures::pictures(folder, ending, &world, &study)?;
+            if is_picture(folder) {
+                drawing::comparison(&study, folder)?;
+                continue;
+            }
+            let count = drawing::pictures(folder, ending, &world, &study)?;
             drawn += &format!("{count} pictures in {}.\n", folder.display());
         }
     }

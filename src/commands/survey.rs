@@ -71,7 +71,7 @@ pub(crate) struct Args {
     #[arg(long, default_value_t = 343.2, value_name = "M/S", value_parser = positive)]
     speed_of_sound: f64,
     /// Draw who hears whom, as SVG or, if the name ends in .png, as PNG
-    #[arg(long, value_name = "FILE", value_parser = picture())]
+    #[arg(long, value_name = "FILE", value_parser = picture("pairs"))]
     svg: Option<PathBuf>,
     /// Print one JSON object
     #[arg(long)]

@@ -116,7 +116,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
 #[derive(Clone, Copy, Serialize)]
 struct Known {
     shortest_us: u32,
-    /// No period is shorter than this by the certificate of the atlas's row.
+    /// Bound of the period by the certificate of the atlas's row.
     certified_us: u32,
 }
 

@@ -19,7 +19,7 @@ use super::firings::{CLOCK, firing};
 const START_NS: u64 = 946_684_800_000_000_000;
 /// From pose to pose.
 const POSES_S: f64 = 0.05;
-/// A path is shown for so long.
+/// Time for which a path is shown.
 const SHOWN_NS: u64 = 120_000_000;
 
 /// Time for which scenes that were exchanged are kept: longer than sound is on its way.
@@ -136,7 +136,7 @@ pub(crate) fn write_mcap(file: &Path, stage: &Stage<'_>, runs: &[Readings]) -> R
 /// ```
 pub struct Recording {
     out: McapWriter,
-    /// When poses are written next, counted in steps.
+    /// Time when poses are written next, counted in steps.
     next: u64,
     /// The scenes of late, each in its world, and since when in seconds.
     scenes: Vec<(Arc<World>, f64)>,
@@ -204,7 +204,7 @@ fn marker(namespace: &str, id: usize, shape: Shape, colour: [f32; 4], lifetime_n
     Marker { frame, namespace, id: id as i32, shape, colour, lifetime_ns }
 }
 
-/// Walls and poles, in the place of those before.
+/// Writes walls and poles, in place of earlier ones.
 fn scene(out: &mut McapWriter, scene: &Scene, time_s: f64) -> Result<(), FileError> {
     const COLOUR: [f32; 4] = [0.2, 0.2, 0.25, 1.0];
     let walls = scene.walls().iter().flat_map(|wall| [wall.from, wall.to]);
@@ -218,7 +218,7 @@ fn scene(out: &mut McapWriter, scene: &Scene, time_s: f64) -> Result<(), FileErr
     out.markers("/scene", at_ns(time_s), &markers)
 }
 
-/// Where robots and sensors are at a moment: transforms, and each robot's odometry, without error.
+/// Writes the poses of robots and sensors at a moment: transforms, and each robot's odometry, without error.
 fn poses(out: &mut McapWriter, stage: &Stage<'_>, time_s: f64) -> Result<(), FileError> {
     let now = at_ns(time_s);
     let transform = |parent: &str, child: &str, pose: &Pose| Transform {
@@ -289,7 +289,7 @@ fn readings(out: &mut McapWriter, stage: &Stage<'_>, run: &Readings) -> Result<(
     Ok(())
 }
 
-/// Where the path of a reading ran.
+/// Returns the corners of the path of a reading.
 fn corners(stage: &Stage<'_>, path: &HeardPath, sent_s: f64) -> Option<Vec<Point>> {
     let scene = stage.scene(sent_s);
     let heard_s = sent_s + path.length_m / scene.air().speed_of_sound();

@@ -42,6 +42,13 @@ pub(crate) fn read_world(file: &Path) -> Result<World, InputError> {
     let world = World::from_text_with(file, &text, robot_ring)?;
     unlikely(&world).map_or(Ok(()), |why| Err(InputError::new(file, why)))?;
     warn_of(file, &text)?;
+    if let [robot] = world.robots()
+        && matches!(robot.motion, Motion::Still)
+        && is_silent(&world)
+    {
+        let found = "robot 1: no wall or pole within its sensors' range";
+        warn(InputError::new(file, format!("{found}; expected one; check its pose, and points_m of walls")))?;
+    }
     for (robot, doubt) in world.doubts() {
         warn(InputError::new(file, format!("robot {}: {doubt}", robot + 1)))?;
     }
@@ -63,15 +70,19 @@ fn unlikely(world: &World) -> Option<String> {
     // Nothing that sound comes back from is near, and coordinates are beyond those of rooms.
     let walls = world.scene().walls().iter().flat_map(|wall| [wall.from, wall.to]);
     let farthest = walls.flat_map(|at| [at.x.abs(), at.y.abs()]).fold(0.0, f64::max);
-    let is_silent = world.robots().iter().filter(|robot| matches!(robot.motion, Motion::Still)).all(|robot| {
-        let reach_m = robot.transducers().map(|transducer| transducer.max_range_m).fold(0.0, f64::max);
-        let reach = Body::Disc(robot.radius_m() + reach_m);
-        world.scene().contact(&reach, &robot.pose).is_none()
-    });
-    let is_far = doubt("points_m", farthest).is_some() && is_silent;
+    let is_far = doubt("points_m", farthest).is_some() && is_silent(world);
     is_far.then(|| {
         format!(
             "points_m: {farthest}, and no wall that a sensor hears; expected metres, likely centimetres or millimetres"
         )
+    })
+}
+
+/// Returns true if no robot that stands has a wall or a pole within its sensors' range.
+fn is_silent(world: &World) -> bool {
+    world.robots().iter().filter(|robot| matches!(robot.motion, Motion::Still)).all(|robot| {
+        let reach_m = robot.transducers().map(|transducer| transducer.max_range_m).fold(0.0, f64::max);
+        let reach = Body::Disc(robot.radius_m() + reach_m);
+        world.scene().contact(&reach, &robot.pose).is_none()
     })
 }

@@ -39,7 +39,7 @@ enum CriterionKey {
     Exact,
 }
 
-/// Contents of such a file.
+/// Contents of a file for `eeruf lab search`.
 pub(crate) struct WaitSpec {
     file: WaitFile,
     layout: OwnedLayout,

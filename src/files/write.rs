@@ -7,10 +7,12 @@ use clap::ArgMatches;
 use eeruf_files::FileError;
 
 use super::error::InputError;
+use crate::commands::arguments::is_picture;
 
 /// The options that name what is read, and those that name what is written.
 const READ: [&str; 2] = ["file", "simulate"];
-const WRITTEN: [&str; 5] = ["out", "log", "mcap", "svg", "certificate"];
+const WRITTEN: [&str; 6] = ["out", "log", "mcap", "svg", "png", "certificate"];
+const PICTURES: [&str; 2] = ["svg", "png"];
 
 /// Refuses a file to write that is one of those read, that is a folder, or whose folder does not exist.
 pub(crate) fn check_outputs(matches: &ArgMatches) -> Result<(), InputError> {
@@ -23,10 +25,13 @@ pub(crate) fn check_outputs(matches: &ArgMatches) -> Result<(), InputError> {
             return wrong("expected another file than the one that is read");
         }
         // These make their folders.
-        if verb == "dataset"
-            || (verb == "design" && id == "out")
-            || (id == "svg" && ["study", "set-one", "set-two", "set-three"].contains(&verb))
+        if verb == "dataset" || (verb == "design" && id == "out") {
+            continue;
+        }
+        if let Some(folder) = PICTURES.contains(&id).then(|| below.get_raw(id)?.next()).flatten().map(Path::new)
+            && !is_picture(folder)
         {
+            make_folder(folder)?;
             continue;
         }
         if file.is_dir() {

@@ -13,7 +13,7 @@ pub(crate) struct Three<'a> {
     pub(crate) measured: &'a Measured,
     /// The family of the way beside one by one.
     pub(crate) other: Family,
-    /// True if that one is recommended; if this is not known, the measurement decides.
+    /// True if the other way is recommended; `None` lets the measurement decide.
     pub(crate) is_recommended: Option<bool>,
 }
 

@@ -21,6 +21,9 @@ const SAID_EVERY: Duration = Duration::from_secs(60);
 /// True if Ctrl-C was pressed since [`begin`].
 static STOPPED: AtomicBool = AtomicBool::new(false);
 
+/// A flag that stays down: where a task cannot be ended, Ctrl-C ends the program.
+static NEVER: AtomicBool = AtomicBool::new(false);
+
 /// Forgets every Ctrl-C: the program begins.
 pub(crate) fn begin() {
     STOPPED.store(false, Ordering::Relaxed);
@@ -52,7 +55,7 @@ pub(crate) struct Watch {
     began: Instant,
     limit: Duration,
     bar: Option<ProgressBar>,
-    /// When the next line is due without a terminal.
+    /// Time when the next line is due without a terminal.
     says_at: Duration,
     interrupted: &'static AtomicBool,
 }
@@ -65,6 +68,12 @@ impl Watch {
     /// One that ends the task when the time is over.
     pub(crate) fn ending_after(limit: Duration) -> Self {
         Self { began: Instant::now(), limit, bar: None, says_at: SAID_AFTER, interrupted: interrupted() }
+    }
+
+    /// Watches a task that only shows how far it has come.
+    pub(crate) fn unstoppable() -> Self {
+        let (began, limit) = (Instant::now(), Duration::MAX);
+        Self { began, limit, bar: None, says_at: SAID_AFTER, interrupted: &NEVER }
     }
 
     /// Forgets a Ctrl-C that ended one task before the next one begins. The time limit is that of all tasks.

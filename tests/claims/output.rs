@@ -51,7 +51,7 @@ fn full_disk_is_exit_74_and_a_sentence() {
 fn full_disk_under_a_named_file_is_exit_74() {
     let design = ["design", "rings/paper-12.toml", "--period-only"];
     let study = ["study", "scenes/alcove.toml", "--method=eeruf", "--periods=2"];
-    let runs = [(&design[..], "--svg"), (&design, "--certificate"), (&study, "--log"), (&study, "--mcap")];
+    let runs = [(&design[..], "--certificate"), (&study, "--log"), (&study, "--mcap")];
     for (words, option) in runs {
         let outcome = run(&[words, &[option, "/dev/full"]].concat(), Stdio::null());
         let err = String::from_utf8_lossy(&outcome.stderr);
@@ -85,5 +85,16 @@ fn closed_pipe_ends_quietly() {
         let outcome = run(words, writer);
         assert_eq!(String::from_utf8_lossy(&outcome.stderr), "", "{words:?}");
         assert!(matches!(outcome.status.code(), None | Some(0)), "{words:?}: {}", outcome.status);
+    }
+}
+
+// Options that few need are in `--help` alone.
+#[test]
+fn short_help_of_each_verb_is_one_screen() {
+    for verb in ["", "design", "study", "logs", "verify", "examples", "completions", "man", "licenses", "lab"] {
+        let words: Vec<_> = verb.split_whitespace().chain(["-h"]).collect();
+        let help = crate::common::eeruf_at_80(&words);
+        let lines = help.lines().count();
+        assert!(lines > 10 && lines <= 48 && help.lines().all(|line| line.chars().count() <= 80), "{lines}\n{help}");
     }
 }

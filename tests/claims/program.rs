@@ -7,6 +7,7 @@ use std::time::Duration;
 use eeruf_design::RingSpec;
 use eeruf_sim::World;
 use eeruf_sim::modules::Module;
+use serde_json::Value;
 
 use crate::common::{C, Scratch, compile_and_run, cpp, eeruf, json};
 
@@ -379,7 +380,7 @@ fn period_that_is_given_says_what_fits() {
     let file = "rings/paper-12.toml";
     for (period, code, t_delta) in [("64000", 1, 499), ("65000", 0, 999), ("100000", 0, 2999)] {
         let asked = eeruf(&["design", file, "--period", period, "--json"]);
-        let found: serde_json::Value = serde_json::from_str(&asked.out).unwrap();
+        let found: Value = serde_json::from_str(&asked.out).unwrap();
         assert_eq!((asked.code, &found["fits"]), (Some(code), &(code == 0).into()), "{}", asked.out);
         assert_eq!((&found["value_us"], &found["proven"]), (&t_delta.into(), &true.into()), "{}", asked.out);
     }
@@ -423,6 +424,35 @@ fn ctrl_c_ends_a_long_design_with_the_best_schedule_so_far() {
     let out = String::from_utf8(outcome.stdout).unwrap();
     assert_eq!(outcome.status.code(), Some(130), "{out}");
     assert!(out.contains("not proven: it may be as short as") && out.contains("t_fire_a_us"), "{out}");
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_keeps_the_seeds_of_an_experiment_that_are_done() {
+    // A busy machine may need longer for the first of them.
+    for seconds in [2, 8, 30] {
+        let mut program = Command::new(env!("CARGO_BIN_EXE_eeruf"));
+        let words = "lab experiment set-three --seeds 100000 --periods 10 --method sequential --json";
+        program.args(words.split(' ')).stdout(Stdio::piped()).stderr(Stdio::piped());
+        let run = program.spawn().unwrap();
+        std::thread::sleep(Duration::from_secs(seconds));
+        let signalled = Command::new("sh").args(["-c", &format!("kill -INT {}", run.id())]).status().unwrap();
+        assert!(signalled.success());
+        let outcome = run.wait_with_output().unwrap();
+        let err = String::from_utf8(outcome.stderr).unwrap();
+        assert_eq!(outcome.status.code(), Some(130), "{err}");
+        if outcome.stdout.is_empty() && seconds < 30 {
+            continue;
+        }
+        let found: Value = serde_json::from_slice(&outcome.stdout).unwrap();
+        let seeds = found["seeds"].as_u64().unwrap();
+        assert!(err.contains(&format!("stopped after {seeds} of 100000 seeds, from 20000 on")), "{err}");
+        // They are those of a run of as many.
+        let words = format!("lab experiment set-three --seeds {seeds} --periods 10 --method sequential --json");
+        let same = json(&words.split(' ').collect::<Vec<_>>());
+        assert_eq!(found, same);
+        return;
+    }
 }
 
 // The examples are written where they are wanted and never over what is there.

@@ -171,7 +171,10 @@ const REFUSED_RUNS: [(&[&str], &str); 95] = [
     (&["design", "ring.toml", "--budget", "-1"], "`-1`; expected no negative number"),
     (&["design", "ring.toml", "--emit", "c", "--json"], "given with --json; expected one of the two"),
     (&["design", "ring.toml", "--json", "--json"], "--json: given more than once; expected once"),
-    (&["design", "ring.toml", "--svg", "out.jpg"], "--svg: `out.jpg`; expected a name that ends in .svg or .png"),
+    (
+        &["design", "ring.toml", "--svg", "out.jpg"],
+        "--svg: `out.jpg`; expected a folder, or a name that ends in .svg or .png",
+    ),
     (&["design", "ring.toml", "--svg", "no/such/out.svg"], "no/such/out.svg: No such file"),
     (&["verify", "schedule.toml", "--t-delta-us", "1.5"], "--t-delta-us: `1.5`; expected a whole number"),
     (&["verify", "schedule.toml", "--t-delta-us", "1e300"], "--t-delta-us: `1e300`; expected a whole number"),
@@ -240,7 +243,10 @@ const REFUSED_RUNS: [(&[&str], &str); 95] = [
     (&["design", "ring.toml", "--certificate", "ring.toml"], "--certificate: ring.toml; expected another file"),
     (&["design", "ring.toml", "--certificate", "folder.toml"], "folder.toml; expected a file, not a folder"),
     (&["design", "ring.toml", "--certificate", "no/c"], "no/c: No such file or directory (os error 2); expected a fol"),
-    (&["study", "scene.toml", "--svg", "out.jpg"], "--svg: `out.jpg`; expected the name of a folder"),
+    (
+        &["study", "scene.toml", "--svg", "out.jpg"],
+        "--svg: `out.jpg`; expected a folder, or a name that ends in .svg or .png",
+    ),
     (&["replay", "log.csv", "--t-delta-us", "500", "--out", "x.mcap"], "a reading without a time; expected --time"),
     (&["replay", "log.csv", "log.csv", "--t-delta-us", "500"], "log.csv: one argument too many; expected one file"),
     (&["logs", "empty.bag"], "the first bytes are not those of a ROS 1 bag of format 2.0; expected a whole"),

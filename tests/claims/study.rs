@@ -163,6 +163,36 @@ fn a_picture_whose_name_ends_in_png_is_one() {
     assert!(std::fs::read(file).unwrap().starts_with(b"\x89PNG"));
 }
 
+// A name without an ending is a folder, one with an ending a file, for every command that draws.
+#[test]
+fn name_of_a_picture_is_a_folder_without_an_ending() {
+    let (folder, _) = Scratch::new("unused", "");
+    let at = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let study = ["study", "scenes/wall.toml", "--periods", "12", "--method", "conventional,flow"];
+    let design = ["design", "--period-only", "rings/hc-sr04-8.toml"];
+    let set_one = ["lab", "experiment", "set-one", "--seeds", "1", "--method", "eeruf"];
+    for (words, name, drawn) in [
+        (&study[..], "a", "a/methods.svg"),
+        (&study, "comparison.svg", "comparison.svg"),
+        (&design, "b/c", "b/c/timing.svg"),
+        (&design, "d.svg", "d.svg"),
+        (&set_one, "e", "e/set-one.svg"),
+        (&set_one, "f.svg", "f.svg"),
+    ] {
+        let outcome = eeruf(&[words, &["--svg", &at(name)]].concat());
+        assert_eq!((outcome.code, outcome.err.as_str()), (Some(0), ""), "{name}");
+        assert!(std::fs::read_to_string(at(drawn)).unwrap().starts_with("<svg"), "{drawn}");
+    }
+    // What cannot be drawn is said before the work.
+    let began = std::time::Instant::now();
+    let refused = eeruf(&["study", "scenes/wall.toml", "--periods", "10000000", "--svg", &at("d.svg/x")]);
+    assert!(
+        refused.code == Some(2) && refused.err.contains("d.svg/x") && began.elapsed().as_secs() < 60,
+        "{}",
+        refused.err
+    );
+}
+
 // Paths are listed by emitter receiver and length with the names that python uses.
 #[test]
 fn paths_are_listed_by_emitter_receiver_and_length() {

@@ -5,13 +5,13 @@ use std::path::PathBuf;
 use std::sync::{Mutex, PoisonError};
 
 use eeruf_core::search::Progress;
-use eeruf_sim::experiments::FIRST;
+use eeruf_sim::experiments::{ExperimentError, FIRST};
 use eeruf_sim::{GainProfile, Physics, Room};
 
-use super::super::arguments::picture_folder;
+use super::super::arguments::{is_picture, pictures};
 use super::shard::Shard;
+use crate::console::note;
 use crate::files::error::InputError;
-use crate::files::write::make_folder;
 use crate::report::draw::Picture;
 use crate::report::watch::Watch;
 
@@ -42,11 +42,11 @@ pub(crate) struct Common {
     /// Print one JSON object
     #[arg(long)]
     pub(crate) json: bool,
-    /// Draw SVG pictures into this folder
-    #[arg(long, value_name = "DIR", value_parser = picture_folder())]
+    /// Draw SVG pictures into this folder, or into one file if the name ends in .svg or .png
+    #[arg(long, value_name = "DIR|FILE", value_parser = pictures())]
     svg: Option<PathBuf>,
     /// Draw the same pictures as PNG
-    #[arg(long, value_name = "DIR", value_parser = picture_folder())]
+    #[arg(long, value_name = "DIR|FILE", value_parser = pictures())]
     png: Option<PathBuf>,
 }
 
@@ -81,12 +81,17 @@ impl Common {
         matches!(self.height, Height::Room).then_some(Room::DEFAULT)
     }
 
-    /// Draws a picture in each form that was asked for; the folders are made if need be.
+    /// Returns true if one file is to have a picture.
+    pub(crate) fn draws_one(&self) -> bool {
+        self.svg.iter().chain(&self.png).any(|name| is_picture(name))
+    }
+
+    /// Draws a picture in each form that was asked for.
     pub(crate) fn draw(&self, name: &str, picture: impl Fn() -> Picture) -> Result<(), InputError> {
         for (folder, ending) in [(&self.svg, "svg"), (&self.png, "png")] {
             if let Some(folder) = folder {
-                make_folder(folder)?;
-                picture().save(&folder.join(name).with_extension(ending))?;
+                let is_one = is_picture(folder);
+                picture().save(&if is_one { folder.clone() } else { folder.join(name).with_extension(ending) })?;
             }
         }
         Ok(())
@@ -110,4 +115,36 @@ pub(crate) fn watched(what: String) -> impl Fn(f64) -> bool + Sync {
         let mut watch = watch.lock().unwrap_or_else(PoisonError::into_inner);
         watch.go_on(|| format!("{what}, {:.0} % done", 100.0 * done))
     }
+}
+
+/// Runs an experiment in blocks of seeds until all are done or Ctrl-C stops it; `run` gets a block's first seed and
+/// length. Returns the number of seeds done and for each method its runs.
+///
+/// # Errors
+/// The first error of `run`, and if it was stopped before a block was done.
+pub(crate) fn in_blocks<R>(
+    (first, seeds): (u64, u64),
+    what: String,
+    run: impl Fn(u64, u64, &(dyn Fn(f64) -> bool + Sync)) -> Result<Vec<Vec<R>>, ExperimentError>,
+) -> Result<(u64, Vec<Vec<R>>), ExperimentError> {
+    let watched = watched(what);
+    // Enough for all cores, and little to lose.
+    let block = 4 * std::thread::available_parallelism().map_or(1, |cores| cores.get() as u64);
+    let (mut done, mut all) = (0, Vec::<Vec<R>>::new());
+    while done < seeds {
+        let count = block.min(seeds - done);
+        let share = |of_block: f64| watched((done as f64 + of_block * count as f64) / seeds as f64);
+        match run(first.saturating_add(done), count, &share) {
+            Ok(runs) if all.is_empty() => all = runs,
+            Ok(runs) => all.iter_mut().zip(runs).for_each(|(all, runs)| all.extend(runs)),
+            Err(ExperimentError::Stopped) if done > 0 => {
+                drop(watched);
+                note(format!("eeruf: stopped after {done} of {seeds} seeds, from {first} on"));
+                return Ok((done, all));
+            }
+            Err(error) => return Err(error),
+        }
+        done += count;
+    }
+    Ok((done, all))
 }

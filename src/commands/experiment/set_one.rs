@@ -8,7 +8,7 @@ use eeruf_sim::best_schedule_for;
 use eeruf_sim::experiments::set_one::{Alcove, SENSORS, SetOne, SetOneOptions, set_one, world_of};
 use eeruf_sim::{Entry, GainProfile, Method, Options, Robot, Stop, Transducer};
 
-use super::common::{BUDGET, Common, bad, designing, watched};
+use super::common::{BUDGET, Common, bad, designing, in_blocks, watched};
 use super::shard::{Part, Runs, runs_of};
 use crate::commands::methods::chosen;
 use crate::commands::show;
@@ -60,13 +60,17 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
     if let Some(shard) = args.common.shard {
         (options.first, options.seeds) = shard.seeds(options.first, options.seeds).map_err(|error| bad(&error))?;
     }
-    let watched = watched(format!("{} alcoves by {} methods", options.seeds, options.methods.len()));
-    let found = set_one(&options, &watched).map_err(|error| bad(&error))?;
-    drop(watched);
-    match args.common.shard {
-        Some(shard) => Part::print(shard, words(args), &options.methods, &found.runs),
-        None => print(args, &options, &found),
+    let what = format!("{} alcoves by {} methods", options.seeds, options.methods.len());
+    if let Some(shard) = args.common.shard {
+        let found = set_one(&options, &watched(what)).map_err(|error| bad(&error))?;
+        return Part::print(shard, words(args), &options.methods, &found.runs);
     }
+    let block = |first, seeds, watched: &(dyn Fn(f64) -> bool + Sync)| {
+        Ok(set_one(&SetOneOptions { first, seeds, ..options.clone() }, watched)?.runs)
+    };
+    let (seeds, runs) = in_blocks((options.first, options.seeds), what, block).map_err(|error| bad(&error))?;
+    let options = SetOneOptions { seeds, ..options };
+    print(args, &options, &SetOne::of(&options, runs))
 }
 
 /// Prints the whole of the runs of all parts.

@@ -5,7 +5,7 @@ use std::path::Path;
 use eeruf_sim::Entry;
 use eeruf_sim::experiments::set_three::{SetThree, SetThreeOptions, set_three};
 
-use super::common::{Common, bad, watched};
+use super::common::{Common, bad, in_blocks, watched};
 use super::shard::{Part, Runs, runs_of};
 use crate::commands::show;
 use crate::files::error::InputError;
@@ -41,13 +41,16 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
     if let Some(shard) = args.common.shard {
         (options.first, options.seeds) = shard.seeds(options.first, options.seeds).map_err(|error| bad(&error))?;
     }
-    let watched = watched(format!("{} placings by {} methods", options.seeds, options.methods.len()));
-    let found = set_three(&options, &watched).map_err(|error| bad(&error))?;
-    drop(watched);
-    match args.common.shard {
-        Some(shard) => Part::print(shard, words(args), &options.methods, &found.runs),
-        None => print(args, &found),
+    let what = format!("{} placings by {} methods", options.seeds, options.methods.len());
+    if let Some(shard) = args.common.shard {
+        let found = set_three(&options, &watched(what)).map_err(|error| bad(&error))?;
+        return Part::print(shard, words(args), &options.methods, &found.runs);
     }
+    let block = |first, seeds, watched: &(dyn Fn(f64) -> bool + Sync)| {
+        Ok(set_three(&SetThreeOptions { first, seeds, ..options.clone() }, watched)?.runs)
+    };
+    let (seeds, runs) = in_blocks((options.first, options.seeds), what, block).map_err(|error| bad(&error))?;
+    print(args, &SetThree::of(&SetThreeOptions { seeds, ..options }, runs))
 }
 
 /// Prints the whole of the runs of all parts.

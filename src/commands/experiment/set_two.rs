@@ -11,7 +11,7 @@ use eeruf_sim::experiments::set_two::{
 };
 use eeruf_sim::{Entry, Method, Point, Robot};
 
-use super::common::{BUDGET, Common, bad, designing, watched};
+use super::common::{BUDGET, Common, bad, designing, in_blocks, watched};
 use super::shard::{Part, Runs, runs_of};
 use crate::commands::methods::chosen;
 use crate::commands::show;
@@ -19,7 +19,7 @@ use crate::files::error::InputError;
 use crate::files::mcap::{Stage, write_mcap};
 use crate::report::draw;
 use crate::report::experiment::set_two::{SideBySide, Sweep, describe};
-use crate::report::watch::Watch;
+use crate::report::watch::{Watch, was_stopped};
 
 /// Set II: a LabMate drives through a course of 8 mm poles, about 1.6 m apart, steered by what its eight sensors
 /// read.
@@ -109,34 +109,43 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
     if let Some(shard) = args.common.shard {
         (options.first, options.seeds) = shard.seeds(options.first, options.seeds).map_err(|error| bad(&error))?;
     }
-    let watched = watched(format!("{} courses by {} methods", options.seeds, options.methods.len()));
+    let what = format!("{} courses by {} methods", options.seeds, options.methods.len());
     let one = |of: &str| match pilots {
         &[pilots] => Ok(SetTwoOptions { pilots, ..options.clone() }),
         _ => Err(bad(&format!("{} pilots; {of} takes one", pilots.len()))),
     };
     if args.sweep {
         let options = one("--sweep")?;
-        let steps = speed_sweep(&options, &SPEEDS, &watched).map_err(|error| bad(&error))?;
-        drop(watched);
+        let steps = speed_sweep(&options, &SPEEDS, &watched(what)).map_err(|error| bad(&error))?;
         let sweep = Sweep::of(&options, steps);
         return Ok(show(args.common.json, || &sweep, || sweep.describe())?);
     }
     if let Some(shard) = args.common.shard {
-        let mut found = set_two(&one("--shard")?, &watched).map_err(|error| bad(&error))?;
-        drop(watched);
+        let mut found = set_two(&one("--shard")?, &watched(what)).map_err(|error| bad(&error))?;
         for run in found.runs.iter_mut().flatten() {
             // Only pictures need them, and they take far more room than all else.
             (run.track, run.grid) = (vec![], vec![]);
         }
         return Part::print(shard, words(args), &options.methods, &found.runs);
     }
+    if pilots.len() > 1 && args.common.draws_one() {
+        return Err(bad(&format!("{} pilots; expected a folder for their pictures", pilots.len())));
+    }
     let mut each = Vec::new();
     for &pilots in pilots {
-        let found = set_two(&SetTwoOptions { pilots, ..options.clone() }, &watched).map_err(|error| bad(&error))?;
+        let options = SetTwoOptions { pilots, ..options.clone() };
+        let block = |first, seeds, watched: &(dyn Fn(f64) -> bool + Sync)| {
+            Ok(set_two(&SetTwoOptions { first, seeds, ..options.clone() }, watched)?.runs)
+        };
+        let seeds = (options.first, options.seeds);
+        let (seeds, runs) = in_blocks(seeds, what.clone(), block).map_err(|error| bad(&error))?;
+        let found = SetTwo::of(&SetTwoOptions { seeds, ..options }, runs);
         args.common.draw(&picture_name(args.second_robot, pilots), || draw::courses(&found))?;
         each.push(found);
+        if was_stopped() {
+            break;
+        }
     }
-    drop(watched);
     print(args, &each)
 }
 

@@ -211,7 +211,7 @@ impl Picture {
     }
 }
 
-/// Each pixel the mean of those that it was drawn as.
+/// Shrinks a picture: each pixel becomes the mean of the pixels that it was drawn as.
 fn shrunk(large: &[u8], width: usize, height: usize) -> Vec<u8> {
     let mut small = Vec::with_capacity(3 * width * height);
     let row = 3 * width * OVERSAMPLING;

@@ -7,7 +7,8 @@ use plotters::style::Color;
 use super::picture::Picture;
 use super::style::{INK, LISTENING, REJECTED, TITLE};
 
-/// When each sensor fires in two periods, and how long it listens: one lane for each sensor, as Fig. 3 of the paper.
+/// Draws the firings of two periods and the listening windows: one lane for each sensor, as Fig. 3
+/// of the paper.
 pub(crate) fn timing_diagram(schedule: &AnySchedule, requirements: &Requirements<'_>) -> Picture {
     const LANE: f64 = 26.0;
     const LEFT: f64 = 48.0;

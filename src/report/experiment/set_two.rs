@@ -26,7 +26,7 @@ fn bodies(bodies: bool) -> &'static str {
     if bodies { ", robots with bodies" } else { "" }
 }
 
-/// Number of courses, and which.
+/// The number of courses and their seeds.
 fn courses(first: u64, seeds: u64) -> String {
     format!("{seeds} courses from {first} on")
 }

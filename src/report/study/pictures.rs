@@ -7,7 +7,6 @@ use eeruf_sim::{Cause, HeardPath, Method, Point, Readings, SensorId, Summary, Wo
 
 use super::found::{Study, TOLERANCE_US, of_robot};
 use crate::files::error::InputError;
-use crate::files::write::make_folder;
 use crate::report::draw::{self, DrawnPath, Panel};
 
 /// The most paths that are drawn for one method.
@@ -15,13 +14,10 @@ const MOST_PATHS: usize = 24;
 /// Number of readings of one sensor that are drawn.
 const SHOWN_READINGS: usize = 70;
 
-/// Draws `scene`, `timing`, `readings`, `methods` and `blind` with this ending into a folder, which is made if need be,
-/// and returns their number.
+/// Draws `scene`, `timing`, `readings`, `methods` and `blind` with this ending into a folder, and returns their number.
 pub(crate) fn pictures(folder: &Path, ending: &str, world: &World, study: &Study) -> Result<usize, InputError> {
-    make_folder(folder)?;
     let file = |name: &str| folder.join(name).with_extension(ending);
-    let summaries: Vec<Summary> = study.runs.iter().map(Readings::summary).collect();
-    draw::methods_chart("Firing methods in the same scene, on the same seed", &summaries).save(&file("methods"))?;
+    comparison(study, &file("methods"))?;
     let mut drawn = 1;
     // Before and after, where both were simulated; or what there is.
     let before = study.of(Method::Conventional).or_else(|| study.runs.first());
@@ -47,6 +43,12 @@ pub(crate) fn pictures(folder: &Path, ending: &str, world: &World, study: &Study
     let lane = |run: &Readings| (run.method, right_shares(&of_robot(run, robot, body.sensors.len())));
     draw::blind_sensors(&study.runs.iter().map(lane).collect::<Vec<_>>()).save(&file("blind"))?;
     Ok(drawn + 1)
+}
+
+/// Draws what each method reads into this file.
+pub(crate) fn comparison(study: &Study, file: &Path) -> Result<(), InputError> {
+    let summaries: Vec<Summary> = study.runs.iter().map(Readings::summary).collect();
+    draw::methods_chart("Firing methods in the same scene, on the same seed", &summaries).save(file)
 }
 
 /// The share of each sensor's firings that were right and believed.

@@ -15,10 +15,10 @@ pub(crate) struct Compared {
     /// Ordered pairs with a path within `until_us`, and how many of them the survey found to be such.
     pub(crate) pairs: usize,
     pub(crate) pairs_found: usize,
-    /// Number of pairs whose loudest such path is 6 dB or more above what is just heard.
+    /// Number of pairs with a path 6 dB or more above the threshold of hearing.
     pub(crate) loud_pairs: usize,
     pub(crate) loud_pairs_found: usize,
-    /// Pairs that the survey says hear each other within `until_us`, and do not at any time, not even 6 dB louder.
+    /// Number of pairs that the survey wrongly says hear each other: they do not at any time, even 6 dB louder.
     pub(crate) pairs_wrong: usize,
     /// Paths between different sensors that the survey found, and how many of them no sound takes that
     /// would be heard 6 dB louder.

@@ -262,8 +262,14 @@ fn faulty_scene_is_written_as_read() {
         ("kind = \"lost\"", "fault 1: no share; expected one with kind \"lost\""),
         ("kind = \"lost\"\nshare = 1.5", "fault 1: share is 1.5; expected 0 to 1"),
         ("kind = \"cut\"\nshare = 0.5", "fault 1: share with kind \"cut\"; expected no such key"),
-        ("kind = \"cut\"\nsensors = [4]", "fault 1: sensors is 4; expected sensors of its robot, counted from 0"),
-        ("kind = \"cut\"\nrobot = 1", "fault 1: robot is 1; expected a robot, counted from 0"),
+        (
+            "kind = \"cut\"\nsensors = [4]",
+            "fault 1: sensors is 4; expected numbers below its robot's number of sensors: they count from 0",
+        ),
+        (
+            "kind = \"cut\"\nrobot = 1",
+            "fault 1: robot is 1; expected a number below that of the robots: they count from 0",
+        ),
         ("kind = \"cut\"\nfrom_s = 2.0\nto_s = 1.0", "fault 1: to_s is 1; expected more than from_s"),
         ("kind = \"echo_wires\"\nsensors = [1]", "fault 1: sensors is 1; expected two different ones"),
         ("kind = \"leg\"\nradius_m = 0.1\nfrom_m = [0, 1]\nto_m = [1, 1]", "fault 1: to_s is inf; expected a time"),

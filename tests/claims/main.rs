@@ -13,6 +13,7 @@ mod field_cases;
 mod inputs;
 mod keys;
 mod logs;
+mod mistakes;
 mod newcomers;
 mod one_ring;
 mod output;

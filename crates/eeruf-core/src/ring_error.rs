@@ -94,7 +94,7 @@ pub enum RingError {
         /// The time asked for.
         audible: Micros,
     },
-    /// Paths of sound would change by more than a ring can keep.
+    /// `path_change` above what a ring can store.
     PathChange {
         /// The change asked for.
         path_change: Micros,
@@ -135,8 +135,8 @@ impl fmt::Display for RingError {
         match self {
             Self::Window { window, min_refire } => write!(
                 f,
-                "a listening window of {window}; a sensor of this schedule fires again after {min_refire}, \
-                 expected a window no longer than that (T_wind)"
+                "a listening window of {window}; expected at most {min_refire}, after which a sensor of this schedule \
+                 fires again (T_wind)"
             ),
             Self::VerifiedWindow { window, verified } => write!(
                 f,

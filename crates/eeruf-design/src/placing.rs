@@ -24,7 +24,8 @@ impl RingFile {
             }
             (None, None, None, Some(urdf), Some(links)) => ("links", self.linked(file, urdf, links)?),
             (None, None, None, Some(urdf), None) => {
-                return Err(format!("urdf = {urdf:?} without links; expected the link of each sensor, in their order"));
+                let expected = "expected `links = [\"sonar_1\", ..]`, the link of each sensor in their order";
+                return Err(format!("urdf = {urdf:?} without links; {expected}"));
             }
             _ => {
                 let expected = "either poses, or spacing_deg and radius_m, or urdf and links, or none of them";

@@ -18,6 +18,14 @@ const TYPES: [(&str, &str); 6] = [
     ("u8", "a whole number from 0 to 255"),
     ("f64", "a number"),
 ];
+/// Keys whose values are lists or tables, and what one looks like.
+const SAMPLES: [(&str, &str); 5] = [
+    ("pose", "pose = { x_m = 0.0, y_m = 0.0, heading_deg = 45.0 }"),
+    ("ring", "ring = { sensors = 8, spacing_deg = 45.0, radius_m = 0.1 }"),
+    ("points_m", "points_m = [[0.0, 1.0], [2.0, 1.0]]"),
+    ("poses", "poses = [{ x_m = 0.1, y_m = 0.0, heading_deg = 45.0 }, ..]"),
+    ("sensors", "a list; a robot's number of sensors stands in its `ring = { sensors = 8, .. }`"),
+];
 /// Endings of keys, and the units that they stand for.
 const UNITS: [(&str, &str); 5] =
     [("_us", "microseconds"), ("_deg", "degrees"), ("_m_s", "metres per second"), ("_m", "metres"), ("_db", "dB")];
@@ -73,7 +81,9 @@ fn syntax(line: &str, error: &str) -> Option<String> {
     }
     let (key, value) = of('=')?;
     match error {
-        _ if !key.is_ascii() => Some(format!("{key}: expected a key of letters from a to z, digits, `-` and `_`")),
+        _ if !key.is_ascii() => {
+            Some(format!("{key}: a letter beyond z; expected a key of a to z, digits, `-` and `_`"))
+        }
         _ if value.ends_with(',') => Some(format!("{key}: a comma after the value; expected the end of the line")),
         _ if error.starts_with("string values must be quoted") => {
             let is_yes = ["yes", "no", "on", "off", "True", "False"].contains(&value);
@@ -186,9 +196,11 @@ fn message(key: Option<&str>, found: &str, error: &str) -> String {
     if let Some(key) = key.filter(|_| (found, expected) == ("map", "a sequence")) {
         return format!("{key}: one table; expected a list of them, each below `[[{key}]]`");
     }
-    if let Some(count) = found.strip_prefix("length ").filter(|_| expected.starts_with("struct ")) {
-        let key = key.map_or(String::new(), |key| format!("{key}: "));
-        return format!("{key}a list of {count}; expected a table with keys: {{ .. = .., .. }}");
+    let is_structure =
+        ["struct ", "a sequence", "an array of ", "a tuple of "].iter().any(|of| expected.starts_with(of));
+    if let Some((key, sample)) = SAMPLES.iter().find(|of| key == Some(of.0) && is_structure) {
+        let found = found.strip_prefix("length ").map_or(found.to_owned(), |count| format!("a list of {count}"));
+        return format!("{key}: {found}; expected {sample}");
     }
     let expected = TYPES.iter().find(|(name, _)| *name == expected).map_or(expected, |(_, words)| words);
     let values = ["an array of length ", "a tuple of size "].iter().find_map(|list| expected.strip_prefix(list));
@@ -261,7 +273,10 @@ mod tests {
                 "line 1: \u{201c}: a typographic quote; expected straight ones: layout = \"ring\"",
             ),
             ("sensors = 4\n[[walls]]\npoints_m = [1, true]", "line 3: points_m: boolean `true`; expected a number"),
-            ("sensors = 4\n[[walls]]\npoints_m = 1", "line 3: points_m: integer `1`; expected 2 values"),
+            (
+                "sensors = 4\n[[walls]]\npoints_m = 1",
+                "line 3: points_m: integer `1`; expected points_m = [[0.0, 1.0], [2.0, 1.0]]",
+            ),
             ("sensors = 4\nsensors = 5", "line 2: sensors: set twice; expected each key once"),
             ("sensors", "line 1: key with no value; expected `=`"),
         ];

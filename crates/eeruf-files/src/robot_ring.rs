@@ -8,7 +8,7 @@ use eeruf_modules::Module;
 pub struct Pose {
     /// Ahead, in metres.
     pub x_m: f64,
-    /// To the left, in metres.
+    /// Distance to the left, in metres.
     pub y_m: f64,
     /// Counter-clockwise from straight ahead, in radians.
     pub heading_rad: f64,

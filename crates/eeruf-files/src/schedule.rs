@@ -91,7 +91,7 @@ pub mod as_file {
         ScheduleFile::from(schedule).serialize(serializer)
     }
 
-    /// Reads them.
+    /// Reads a schedule.
     ///
     /// # Errors
     /// As [`ScheduleFile::schedule`], and those of the deserializer.

@@ -38,14 +38,15 @@ pub(crate) struct Foreign(&'static str, &'static str);
 
 const XZ: Foreign = Foreign("packed by xz", "");
 const BINARY: Foreign = Foreign("binary data of an unknown form", "");
-const FRAMES: [(&[u8], Foreign); 3] = [
+const FRAMES: [(&[u8], Foreign); 4] = [
+    (b"%PDF", Foreign("a PDF", "")),
     (b"PK\x03\x04", Foreign("a zip archive or a spreadsheet", "read_excel")),
     (b"PAR1", Foreign("a Parquet file", "read_parquet")),
     (b"\x89HDF", Foreign("an HDF5 file", "read_hdf")),
 ];
 
 impl Form {
-    /// By the first bytes of a file, else by the ending of its name.
+    /// Recognises a form by the first bytes of a file, else by the ending of its name.
     pub(crate) fn of(first: &[u8], file: &Path) -> Self {
         let ending = file.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
         let starts = |magic: &[u8]| first.starts_with(magic);

@@ -165,8 +165,8 @@ Example:
     >>> scene = eeruf.sim.Scene([[5, 2, -5, 2]], robots=[robot])
     >>> eeruf.sim.simulate(scene)
     Traceback (most recent call last):
-    eeruf.SimulationError: robot 0, method eeruf: a listening window of 90 ms; a sensor of this schedule fires \
-    again after 45.6 ms, expected a window no longer than that (T_wind)
+    eeruf.SimulationError: robot 0, method eeruf: a listening window of 90 ms; expected at most 45.6 ms, \
+    after which a sensor of this schedule fires again (T_wind)
 ";
     ExperimentError "An experiment that cannot be run.
 

@@ -6,7 +6,7 @@ use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 
 use eeruf_core::{Micros, ReadingKind};
-use eeruf_serial::{Firing, Message, Received};
+use eeruf_serial::{FiringMessage, Message, Received};
 
 use crate::board_clock::BoardClock;
 use crate::board_line::{FromLine, listen, nanoseconds};
@@ -235,11 +235,11 @@ impl EerufNode {
         }
     }
 
-    fn firing(&mut self, firing: &Firing, fired_ns: i64) -> Result<(), String> {
+    fn firing(&mut self, firing: &FiringMessage, fired_ns: i64) -> Result<(), String> {
         if let Some(log) = &mut self.log {
             log.write(&self.clock_name, firing).map_err(|error| format!("log: {error}"))?;
         }
-        let Firing { sensor, kind, t_echo, late, explained_by, .. } = *firing;
+        let FiringMessage { sensor, kind, t_echo, late, explained_by, .. } = *firing;
         self.diagnosis.reading(self.now_s(), sensor, kind, t_echo, late, explained_by);
         self.publish(sensor, kind, t_echo, fired_ns);
         Ok(())

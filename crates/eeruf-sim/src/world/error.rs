@@ -1,4 +1,4 @@
-//! Why a world cannot be.
+//! Errors of building a world.
 
 use core::fmt;
 
@@ -8,8 +8,8 @@ use super::robot::MAX_ROBOTS;
 use crate::scene::{Contact, SceneError};
 use crate::tracing::MAX_ORDER;
 
-/// Why a world cannot be. Robots are counted from 0 in code and printed from 1; walls and poles from 0, as in files.
-/// `{:#}` counts from 0 where `{}` counts from 1.
+/// Error of building a world. Robots are counted from 0 in code and printed from 1; walls and poles from 0, as in
+/// files. `{:#}` counts from 0 where `{}` counts from 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum WorldError {
@@ -173,10 +173,12 @@ impl fmt::Display for WorldError {
                 }
                 write!(f, "; expected it to stand free at its pose")?;
                 disc_m.map_or(Ok(()), |radius_m| {
+                    let likely =
+                        if radius_m > 2.0 { "likely centimetres or millimetres in its ring; else " } else { "" };
                     write!(
                         f,
-                        ". It has no body, so it takes up a disc of {radius_m:.3} m, which holds all its sensors: give \
-                         its own outline, such as body = {{ box_m = [0.4, 0.3] }} in a file"
+                        ". It has no body, so it takes up a disc of {radius_m:.3} m, which holds all its sensors: \
+                         {likely}give its own outline, such as body = {{ box_m = [0.4, 0.3] }} in a file"
                     )
                 })
             }

@@ -22,9 +22,9 @@ pub struct Fault {
     pub robot: usize,
     /// The sensors that have it, counted from 0; empty for all.
     pub sensors: Vec<u8>,
-    /// When it begins, in seconds.
+    /// Start, in seconds.
     pub from_s: f64,
-    /// When it ends, in seconds; infinite for never.
+    /// End, in seconds; infinite for never.
     pub to_s: f64,
 }
 
@@ -45,7 +45,7 @@ pub enum FaultKind {
         /// Rate, in 1/s.
         per_s: f64,
     },
-    /// Something else is heard in this share of firings, at any time of the window alike.
+    /// A random edge in this share of firings, uniform over the window.
     UniformNoise {
         /// 0 to 1.
         share: f64,
@@ -90,32 +90,32 @@ pub enum FaultKind {
     GlitchLow {
         /// Time after it rose, in us.
         after_us: u32,
-        /// For how long, in us.
+        /// Duration, in us.
         width_us: u32,
     },
     /// The line is high for a moment while it should be low.
     GlitchHigh {
         /// Time after it fell, or was triggered where it rises with the echo, in us.
         after_us: u32,
-        /// For how long, in us.
+        /// Duration, in us.
         width_us: u32,
     },
     /// A leg walks by, in a straight line from the fault's beginning to its end.
     Leg {
-        /// Its radius in metres.
+        /// The radius in metres.
         radius_m: f64,
-        /// Where it begins.
+        /// Start point.
         from_m: [f64; 2],
-        /// Where it ends.
+        /// End point.
         to_m: [f64; 2],
     },
     /// A door, which stands at one angle, turns from the fault's beginning to its end and then stands at the other.
     Door {
-        /// Its hinge.
+        /// The hinge.
         hinge_m: [f64; 2],
-        /// Its width in metres.
+        /// The width in metres.
         length_m: f64,
-        /// Its direction from the hinge before, counter-clockwise from the x axis.
+        /// The direction from the hinge before, counter-clockwise from the x axis.
         from_deg: f64,
         /// The heading after, in degrees.
         to_deg: f64,
@@ -252,10 +252,14 @@ impl Fault {
     pub(super) fn check(&self, index: usize, robots: &[Robot]) -> Result<(), WorldError> {
         let fail = |field, value, expected| Err(WorldError::Fault { fault: index, field, value, expected });
         let Some(robot) = robots.get(self.robot) else {
-            return fail("robot", self.robot as f64, "a robot, counted from 0");
+            return fail("robot", self.robot as f64, "a number below that of the robots: they count from 0");
         };
         if let Some(&sensor) = self.sensors.iter().find(|&&sensor| usize::from(sensor) >= robot.sensors.len()) {
-            return fail("sensors", f64::from(sensor), "sensors of its robot, counted from 0");
+            return fail(
+                "sensors",
+                f64::from(sensor),
+                "numbers below its robot's number of sensors: they count from 0",
+            );
         }
         if !(0.0..=LATEST_S).contains(&self.from_s) {
             return fail("from_s", self.from_s, "0 to 1e9");

@@ -12,6 +12,7 @@ mod faults;
 mod field_cases;
 mod inputs;
 mod keys;
+mod listings;
 mod logs;
 mod mistakes;
 mod newcomers;

@@ -8,14 +8,15 @@ import matplotlib.pyplot as plt
 import numpy as np
 
 HERE = Path(__file__).parent
-WAYS = {"sequential": "one by one", "conventional": "all within 60 ms, every echo believed", "flow": "flow"}
-FROM_S, RIGHT, WRONG, REJECTED = 30.0, "#1a7f4b", "#d1242f", "#b5bac0"
+WAYS = {"blocking": "one by one, as sketches fire", "conventional": "all within 100 ms, every echo believed", "flow": "flow"}
+FROM_S, RIGHT, WRONG, REJECTED = 20.0, "#1a7f4b", "#d1242f", "#b5bac0"
 
 plt.rcParams.update({"svg.hashsalt": "eeruf", "svg.fonttype": "none", "font.size": 9, "font.family": "sans-serif"})
-scene = eeruf.sim.Scene.read_toml(HERE.parents[1] / "scenes" / "alcove.toml")
+scene = eeruf.sim.Scene.read_toml(HERE.parents[1] / "scenes" / "meeting-hc-sr04.toml")
 figure, axes = plt.subplots(1, 3, figsize=(10, 2.9), sharey=True, layout="constrained")
 for ax, (method, title) in zip(axes, WAYS.items()):
-    all_readings = eeruf.sim.simulate(scene, method=method, periods=1000, seed=1)
+    all_readings = eeruf.sim.simulate(scene, method=method, periods=600, seed=1)
+    all_readings = all_readings[all_readings.robot == 0]
     shown = (all_readings.emitted_s >= FROM_S) & (all_readings.emitted_s < FROM_S + 1)
     time, sensor = all_readings.emitted_s[shown] - FROM_S, all_readings.sensor[shown] + 1
     accepted, wrong = all_readings.is_accepted[shown], all_readings.is_wrong()[shown]

@@ -73,6 +73,28 @@ fn table_of_readme_is_in_the_tables_that_are_kept() {
     }
 }
 
+// What the first picture shows is what the first command simulates, and its words are what it counts.
+#[test]
+fn first_picture_and_command_of_readme_are_of_one_scene() {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let read = |path: &str| std::fs::read_to_string(root.join(path)).unwrap();
+    let readme = read("README.md");
+    let (first, _) = readme.split_once("```sh\n").and_then(|(_, rest)| rest.split_once('\n')).unwrap();
+    let scene = first.split(' ').find_map(|word| word.strip_prefix("scenes/")).unwrap();
+    assert!(read("docs/pictures/second.py").contains(&format!("\"{scene}\"")), "{first}");
+    let (said, _) = readme.split_once("](docs/pictures/second.svg)").unwrap();
+    let said = said.rsplit("![").next().unwrap();
+    let picture = read("docs/pictures/second.svg");
+    let counts: Vec<_> = picture
+        .split(" wrong in this second")
+        .filter_map(|part| part.rsplit('>').next()?.split_once(" right, "))
+        .collect();
+    assert_eq!(counts.len(), 3, "{counts:?}");
+    for (right, wrong) in counts {
+        assert!(said.contains(&format!("{right} right")) && said.contains(&format!(" {wrong} wrong")), "{said}");
+    }
+}
+
 // The site has a page of it.
 #[test]
 fn reference_of_options_describes_each_one() {

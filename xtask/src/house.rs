@@ -15,7 +15,7 @@ const FILE: usize = 700;
 
 /// Openings that name no thing, or one of the line above: a doc comment begins with a noun, or with what the function
 /// does.
-const OPENINGS: [&str; 15] = [
+const OPENINGS: [&str; 21] = [
     "What ",
     "Whether ",
     "How ",
@@ -31,6 +31,12 @@ const OPENINGS: [&str; 15] = [
     "These ",
     "They ",
     "Their ",
+    "Its ",
+    "Why ",
+    "For how ",
+    "When it ",
+    "Where it ",
+    "To be ",
 ];
 /// Phrases with a plainer word, which stands behind; each in two parts, so that this file has none of them.
 const PHRASES: [(&str, &str, &str); 2] =

@@ -6,10 +6,11 @@ use std::sync::{Mutex, PoisonError};
 
 use eeruf_core::search::Progress;
 use eeruf_sim::experiments::{ExperimentError, FIRST};
-use eeruf_sim::{GainProfile, Physics, Room};
+use eeruf_sim::{Entry, GainProfile, Physics, Room};
+use serde::Serialize;
 
 use super::super::arguments::{is_picture, pictures};
-use super::shard::Shard;
+use super::shard::{Part, Shard};
 use crate::console::note;
 use crate::files::error::InputError;
 use crate::report::draw::Picture;
@@ -117,34 +118,50 @@ pub(crate) fn watched(what: String) -> impl Fn(f64) -> bool + Sync {
     }
 }
 
-/// Runs an experiment in blocks of seeds until all are done or Ctrl-C stops it; `run` gets a block's first seed and
-/// length. Returns the number of seeds done and for each method its runs.
-///
-/// # Errors
-/// The first error of `run`, and if it was stopped before a block was done.
-pub(crate) fn in_blocks<R>(
-    (first, seeds): (u64, u64),
-    what: String,
-    run: impl Fn(u64, u64, &(dyn Fn(f64) -> bool + Sync)) -> Result<Vec<Vec<R>>, ExperimentError>,
-) -> Result<(u64, Vec<Vec<R>>), ExperimentError> {
-    let watched = watched(what);
-    // Enough for all cores, and little to lose.
-    let block = 4 * std::thread::available_parallelism().map_or(1, |cores| cores.get() as u64);
-    let (mut done, mut all) = (0, Vec::<Vec<R>>::new());
-    while done < seeds {
-        let count = block.min(seeds - done);
-        let share = |of_block: f64| watched((done as f64 + of_block * count as f64) / seeds as f64);
-        match run(first.saturating_add(done), count, &share) {
-            Ok(runs) if all.is_empty() => all = runs,
-            Ok(runs) => all.iter_mut().zip(runs).for_each(|(all, runs)| all.extend(runs)),
-            Err(ExperimentError::Stopped) if done > 0 => {
-                drop(watched);
-                note(format!("eeruf: stopped after {done} of {seeds} seeds, from {first} on"));
-                return Ok((done, all));
-            }
-            Err(error) => return Err(error),
+/// Asked now and then with the share that is done, 0 to 1.
+pub(crate) type Watched<'a> = &'a (dyn Fn(f64) -> bool + Sync);
+
+impl Common {
+    /// Runs an experiment in blocks of seeds until all are done or Ctrl-C stops it; `run` gets a block's first seed and
+    /// length. Returns the number of seeds done and for each method its runs; `None` if it printed the part of a shard.
+    ///
+    /// # Errors
+    /// The first error of `run`, and if it was stopped before a block was done.
+    pub(crate) fn in_blocks<R: Serialize>(
+        &self,
+        (set, of): (&'static str, &str),
+        words: impl FnOnce() -> Vec<String>,
+        methods: &[Entry],
+        (mut first, mut seeds): (u64, u64),
+        run: impl Fn(u64, u64, Watched<'_>) -> Result<Vec<Vec<R>>, ExperimentError>,
+    ) -> Result<Option<(u64, Vec<Vec<R>>)>, InputError> {
+        let bad = bad(set);
+        if let Some(shard) = self.shard {
+            (first, seeds) = shard.seeds(first, seeds).map_err(|error| bad(&error))?;
         }
-        done += count;
+        let watched = watched(format!("{seeds} {of} by {} methods", methods.len()));
+        if let Some(shard) = self.shard {
+            let runs = run(first, seeds, &watched).map_err(|error| bad(&error))?;
+            return Part::print(shard, words(), methods, &runs).map(|()| None);
+        }
+        // Enough for all cores, and little to lose.
+        let block = 4 * std::thread::available_parallelism().map_or(1, |cores| cores.get() as u64);
+        let (mut done, mut all) = (0, Vec::<Vec<R>>::new());
+        while done < seeds {
+            let count = block.min(seeds - done);
+            let share = |of_block: f64| watched((done as f64 + of_block * count as f64) / seeds as f64);
+            match run(first.saturating_add(done), count, &share) {
+                Ok(runs) if all.is_empty() => all = runs,
+                Ok(runs) => all.iter_mut().zip(runs).for_each(|(all, runs)| all.extend(runs)),
+                Err(ExperimentError::Stopped) if done > 0 => {
+                    drop(watched);
+                    note(format!("eeruf: stopped after {done} of {seeds} seeds, from {first} on"));
+                    break;
+                }
+                Err(error) => return Err(bad(&error)),
+            }
+            done += count;
+        }
+        Ok(Some((done, all)))
     }
-    Ok((done, all))
 }

@@ -8,8 +8,8 @@ use eeruf_sim::best_schedule_for;
 use eeruf_sim::experiments::set_one::{Alcove, SENSORS, SetOne, SetOneOptions, set_one, world_of};
 use eeruf_sim::{Entry, GainProfile, Method, Options, Robot, Stop, Transducer};
 
-use super::common::{BUDGET, Common, bad, designing, in_blocks, watched};
-use super::shard::{Part, Runs, runs_of};
+use super::common::{BUDGET, Common, Watched, bad, designing, watched};
+use super::shard::{Runs, runs_of};
 use crate::commands::methods::chosen;
 use crate::commands::show;
 use crate::console::{print_line, tell};
@@ -49,26 +49,19 @@ pub(crate) struct Args {
 }
 
 pub(crate) fn run(args: &Args) -> Result<(), InputError> {
-    let bad = bad("set-one");
-    let mut options = options(args)?;
+    let options = options(args)?;
     if args.vary {
         return vary(args, &options);
     }
     if let Some(file) = &args.mcap {
         return first_alcove(file, &options);
     }
-    if let Some(shard) = args.common.shard {
-        (options.first, options.seeds) = shard.seeds(options.first, options.seeds).map_err(|error| bad(&error))?;
-    }
-    let what = format!("{} alcoves by {} methods", options.seeds, options.methods.len());
-    if let Some(shard) = args.common.shard {
-        let found = set_one(&options, &watched(what)).map_err(|error| bad(&error))?;
-        return Part::print(shard, words(args), &options.methods, &found.runs);
-    }
-    let block = |first, seeds, watched: &(dyn Fn(f64) -> bool + Sync)| {
+    let block = |first, seeds, watched: Watched<'_>| {
         Ok(set_one(&SetOneOptions { first, seeds, ..options.clone() }, watched)?.runs)
     };
-    let (seeds, runs) = in_blocks((options.first, options.seeds), what, block).map_err(|error| bad(&error))?;
+    let seeds = (options.first, options.seeds);
+    let ran = args.common.in_blocks(("set-one", "alcoves"), || words(args), &options.methods, seeds, block)?;
+    let Some((seeds, runs)) = ran else { return Ok(()) };
     let options = SetOneOptions { seeds, ..options };
     print(args, &options, &SetOne::of(&options, runs))
 }

@@ -5,8 +5,8 @@ use std::path::Path;
 use eeruf_sim::Entry;
 use eeruf_sim::experiments::set_three::{SetThree, SetThreeOptions, set_three};
 
-use super::common::{Common, bad, in_blocks, watched};
-use super::shard::{Part, Runs, runs_of};
+use super::common::{Common, Watched};
+use super::shard::{Runs, runs_of};
 use crate::commands::show;
 use crate::files::error::InputError;
 use crate::report::draw;
@@ -36,20 +36,13 @@ pub(crate) struct Args {
 const SEEDS: u64 = 200;
 
 pub(crate) fn run(args: &Args) -> Result<(), InputError> {
-    let bad = bad("set-three");
-    let mut options = options(args);
-    if let Some(shard) = args.common.shard {
-        (options.first, options.seeds) = shard.seeds(options.first, options.seeds).map_err(|error| bad(&error))?;
-    }
-    let what = format!("{} placings by {} methods", options.seeds, options.methods.len());
-    if let Some(shard) = args.common.shard {
-        let found = set_three(&options, &watched(what)).map_err(|error| bad(&error))?;
-        return Part::print(shard, words(args), &options.methods, &found.runs);
-    }
-    let block = |first, seeds, watched: &(dyn Fn(f64) -> bool + Sync)| {
+    let options = options(args);
+    let block = |first, seeds, watched: Watched<'_>| {
         Ok(set_three(&SetThreeOptions { first, seeds, ..options.clone() }, watched)?.runs)
     };
-    let (seeds, runs) = in_blocks((options.first, options.seeds), what, block).map_err(|error| bad(&error))?;
+    let seeds = (options.first, options.seeds);
+    let ran = args.common.in_blocks(("set-three", "placings"), || words(args), &options.methods, seeds, block)?;
+    let Some((seeds, runs)) = ran else { return Ok(()) };
     print(args, &SetThree::of(&SetThreeOptions { seeds, ..options }, runs))
 }
 

@@ -11,8 +11,8 @@ use eeruf_sim::experiments::set_two::{
 };
 use eeruf_sim::{Entry, Method, Point, Robot};
 
-use super::common::{BUDGET, Common, bad, designing, in_blocks, watched};
-use super::shard::{Part, Runs, runs_of};
+use super::common::{BUDGET, Common, Watched, bad, designing, watched};
+use super::shard::{Runs, runs_of};
 use crate::commands::methods::chosen;
 use crate::commands::show;
 use crate::files::error::InputError;
@@ -95,7 +95,7 @@ fn speed(text: &str) -> Result<f64, String> {
 
 pub(crate) fn run(args: &Args) -> Result<(), InputError> {
     let bad = bad("set-two");
-    let mut options = options(args)?;
+    let options = options(args)?;
     let pilots = &args.pilots[..];
     if let Some(file) = &args.mcap {
         let ([entry], [pilots]) = (&options.methods[..], pilots) else {
@@ -106,39 +106,36 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
         let driven = drive(&options, entry, options.first, &watched).map_err(|error| bad(&error))?;
         return write_mcap(file, &Stage::driven(&driven.world, &driven.run.track), &[driven.readings]);
     }
-    if let Some(shard) = args.common.shard {
-        (options.first, options.seeds) = shard.seeds(options.first, options.seeds).map_err(|error| bad(&error))?;
-    }
-    let what = format!("{} courses by {} methods", options.seeds, options.methods.len());
-    let one = |of: &str| match pilots {
-        &[pilots] => Ok(SetTwoOptions { pilots, ..options.clone() }),
+    let takes_one = |of: &str| match pilots {
+        [_] => Ok(()),
         _ => Err(bad(&format!("{} pilots; {of} takes one", pilots.len()))),
     };
     if args.sweep {
-        let options = one("--sweep")?;
+        takes_one("--sweep")?;
+        let options = SetTwoOptions { pilots: pilots[0], ..options };
+        let what = format!("{} courses by {} methods", options.seeds, options.methods.len());
         let steps = speed_sweep(&options, &SPEEDS, &watched(what)).map_err(|error| bad(&error))?;
         let sweep = Sweep::of(&options, steps);
         return Ok(show(args.common.json, || &sweep, || sweep.describe())?);
     }
-    if let Some(shard) = args.common.shard {
-        let mut found = set_two(&one("--shard")?, &watched(what)).map_err(|error| bad(&error))?;
-        for run in found.runs.iter_mut().flatten() {
-            // Only pictures need them, and they take far more room than all else.
-            (run.track, run.grid) = (vec![], vec![]);
-        }
-        return Part::print(shard, words(args), &options.methods, &found.runs);
-    }
-    if pilots.len() > 1 && args.common.draws_one() {
-        return Err(bad(&format!("{} pilots; expected a folder for their pictures", pilots.len())));
+    let is_part = args.common.shard.is_some();
+    if is_part || args.common.draws_one() {
+        takes_one(if is_part { "--shard" } else { "a file for --svg or --png" })?;
     }
     let mut each = Vec::new();
     for &pilots in pilots {
         let options = SetTwoOptions { pilots, ..options.clone() };
-        let block = |first, seeds, watched: &(dyn Fn(f64) -> bool + Sync)| {
-            Ok(set_two(&SetTwoOptions { first, seeds, ..options.clone() }, watched)?.runs)
+        let block = |first, seeds, watched: Watched<'_>| {
+            let mut runs = set_two(&SetTwoOptions { first, seeds, ..options.clone() }, watched)?.runs;
+            for run in runs.iter_mut().flatten().filter(|_| is_part) {
+                // Only pictures need them, and they take far more room than all else.
+                (run.track, run.grid) = (vec![], vec![]);
+            }
+            Ok(runs)
         };
         let seeds = (options.first, options.seeds);
-        let (seeds, runs) = in_blocks(seeds, what.clone(), block).map_err(|error| bad(&error))?;
+        let ran = args.common.in_blocks(("set-two", "courses"), || words(args), &options.methods, seeds, block)?;
+        let Some((seeds, runs)) = ran else { return Ok(()) };
         let found = SetTwo::of(&SetTwoOptions { seeds, ..options }, runs);
         args.common.draw(&picture_name(args.second_robot, pilots), || draw::courses(&found))?;
         each.push(found);

@@ -152,10 +152,10 @@ pub(crate) fn keyed(line: &str) -> Option<Vec<(String, String)>> {
     if line.contains(['\u{ff1a}', '\u{a7}']) {
         return keyed(&line.replace('\u{ff1a}', ":").replace('\u{a7}', " "));
     }
-    if let Some(arrow) = ["<-", "->"].into_iter().find(|arrow| line.contains(arrow) && !line.contains([':', '='])) {
-        return keyed(&line.replace(arrow, "="));
-    }
     if !line.contains([':', '=']) {
+        if let Some(arrow) = ["<-", "->"].into_iter().find(|arrow| line.contains(arrow)) {
+            return keyed(&line.replace(arrow, "="));
+        }
         return glued(line).or_else(|| sentence(line));
     }
     let dict = line.trim().trim_start_matches("- ").strip_prefix('{').and_then(|inner| inner.strip_suffix('}'));
@@ -163,7 +163,7 @@ pub(crate) fn keyed(line: &str) -> Option<Vec<(String, String)>> {
     let mut unit_at_end = None;
     while let Some(at) = rest.find([':', '=']) {
         // Behind it a decoded message begins.
-        if let Some((_, after)) = rest.split_once("::").filter(|(before, _)| before.len() == at) {
+        if let Some(after) = rest[at..].strip_prefix("::") {
             rest = after;
             continue;
         }
@@ -232,7 +232,7 @@ pub(crate) fn keyed(line: &str) -> Option<Vec<(String, String)>> {
         let begins = word.starts_with(|letter: char| letter.is_alphabetic() || "%\"\u{b0}\u{b5}".contains(letter));
         let is_unit = is_unit && begins && !word.contains(|letter: char| letter.is_ascii_digit() || letter == '(');
         if !is_key && !text.is_empty() && value::range(&text, true).is_some() && is_unit {
-            text = format!("{text} {word}");
+            text = format!("{text} {}", word.trim_end_matches([')', ']']));
             rest = &spaced[word.len()..];
         }
         // A remark, such as the same range in another unit.
@@ -249,9 +249,10 @@ pub(crate) fn keyed(line: &str) -> Option<Vec<(String, String)>> {
         pairs.push((if heading.is_empty() { key.to_owned() } else { format!("{heading} {key}") }, text));
     }
     // `left=342 right=1201 (mm)`
-    let is_length = |name: &str| matches!(meaning(name), Meaning::Range | Meaning::Vague);
-    for (_, text) in pairs.iter_mut().filter(|(name, text)| is_length(name) && value::number(text, true).is_some()) {
-        text.extend(unit_at_end.iter().flat_map(|unit| [" ", unit]));
+    if let Some(unit) = unit_at_end {
+        let is_length = |name: &str| matches!(meaning(name), Meaning::Range | Meaning::Vague);
+        let of = pairs.iter_mut().filter(|(name, text)| value::number(text, true).is_some() && is_length(name));
+        of.for_each(|(_, text)| text.extend([" ", unit]));
     }
     // A time series' instant behind the values.
     if let Some(instant) = Some(rest.trim()).filter(|rest| is_instant(rest) && !pairs.is_empty()) {
@@ -273,6 +274,9 @@ fn is_instant(text: &str) -> bool {
 
 /// The name at the end of what stands between two values.
 fn name_in(before: &str, is_equal: bool) -> &str {
+    if before.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_') {
+        return before;
+    }
     let mut name = before;
     for open in ['(', '[', '{'] {
         let close = if open == '(' { ')' } else { (open as u8 + 2) as char };

@@ -37,7 +37,8 @@ const OTHERS: &str = "\
     yaw pitch roll heading angle theta odom odometry x y z lat lon alt altitude encoder pwm motor rssi snr \
     variance covariance std intensity intensities radiation fov period phase reading rate size stride offset \
     checksum crc gain strength quality confidence amplitude threshold event error err message msg rpm light ldr \
-    pir button led setpoint target desired goal color colour qos type orientation unit units given solo steady batt vbat vcc watt percent soc enc encoders tick \
+    pir button led setpoint target desired goal color colour qos type orientation unit units given solo steady batt \
+    vbat vcc watt percent soc enc encoders tick \
     ticks tof sharp acceleration accelerometer gyroscope mag magnetometer imu gps sat ax ay az gx gy gz mx my mz \
     vx vy vz q servo cmd linear angular valid ok enabled bump bumper touch contact estop hz fps deg degc lux feed \
     stat orient elevation adc analog analogue ttl";

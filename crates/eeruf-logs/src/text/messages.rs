@@ -1,5 +1,5 @@
-//! Messages as `ros2 topic echo` and `rostopic echo` print them: maps by indentation, each ended by a line of `---`; and
-//! blocks of `name: value`, each ended by a blank line or begun by `###`.
+//! Messages as `ros2 topic echo` and `rostopic echo` print them: maps by indentation, each ended by a line of `---`;
+//! and blocks of `name: value`, each ended by a blank line or begun by `###`.
 
 use std::collections::BTreeSet;
 use std::io;
@@ -20,8 +20,8 @@ pub(super) enum End {
 }
 
 impl End {
-    /// By the beginning of a text: keys and elements of lists alone, up to a line that ends them; or blocks with the same
-    /// keys, two and more in each.
+    /// By the beginning of a text: keys and elements of lists alone, up to a line that ends them; or blocks with the
+    /// same keys, two and more in each.
     pub(super) fn of(start: &str) -> Option<Self> {
         let is_plain = |key: &str| key.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
         let is_key = |line: &&str| entry(line).is_some_and(|(key, _)| line.starts_with(key) && is_plain(key));

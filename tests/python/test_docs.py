@@ -177,7 +177,7 @@ def test_picture_of_a_second_says_what_the_simulator_says(tmp_path: Path) -> Non
         for svg in (drawn, ROOT / "docs/pictures/second.svg")
     ]
     assert counts[0] == counts[1]
-    assert len(counts[0]) == 6
+    assert len(counts[0]) == 4
 
 
 def test_pictures_of_wiring_are_those_of_the_tables(tmp_path: Path) -> None:

@@ -236,7 +236,7 @@ def test_faults_are_said_by_the_words_of_scene_files() -> None:
     ]:
         with pytest.raises(eeruf.ArgumentError, match=message):
             sim.Scene(WALLS, robots=[robot], faults=[fault])  # type: ignore[list-item]
-    with pytest.raises(eeruf.SceneError, match="sensors is 2; expected sensors of its robot"):
+    with pytest.raises(eeruf.SceneError, match="sensors is 2; expected numbers below its robot"):
         sim.Scene(WALLS, robots=[robot], faults=[{"kind": "cut", "sensors": [2]}])
 
 

@@ -83,7 +83,10 @@ impl RoomWay {
             let at = |sensor| Micros::new((u64::from(period) * u64::from(sensor) / u64::from(sensors)) as u32);
             let rows = vec![(0..sensors).map(at).collect()];
             apart.robot.firing.table = Some(FiringTable { period: Micros::new(period), rows });
-            ways.push(apart);
+            // Few sensors have one period for several gaps.
+            if ways.iter().all(|way| way.robot.firing.table != apart.robot.firing.table) {
+                ways.push(apart);
+            }
         }
         ways.push(way(Family::OneByOne, "blocking", Method::Blocking, rest));
         ways.push(way(Family::Groups, "far_groups", Method::FarGroups, rest));

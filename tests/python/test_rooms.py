@@ -51,7 +51,7 @@ def test_wrong_arguments_are_named() -> None:
     """Thing, value and expectation."""
     with pytest.raises(eeruf.ArgumentError, match=r'kind = .*kitchen.*; expected .*"corridor"'):
         ANY.rooms(RING, kind="kitchen")
-    with pytest.raises(eeruf.ArgumentError, match=r"none\.toml: No such file"):
+    with pytest.raises(eeruf.RingError, match=r"none\.toml: No such file"):
         experiments.recommend("none.toml")
     with pytest.raises(eeruf.ArgumentError, match="places = 0; expected a whole number from 1 to 1000"):
         experiments.recommend(RING, places=0)

@@ -296,7 +296,7 @@ def test_a_ring_file_makes_the_same_robot_in_code_as_in_a_scene(tmp_path: Path) 
         assert order[np.isin(order, array)][:16].tolist() == array * 2
     with pytest.raises(eeruf.ArgumentError, match="ring: it does not say where sensors stand"):
         sim.Robot((0, 0, 0), ring=rings / "paper-12.toml")
-    with pytest.raises(eeruf.ArgumentError, match="nowhere"):
+    with pytest.raises(eeruf.RingError, match="nowhere"):
         sim.Robot((0, 0, 0), ring="nowhere.toml")
 
 

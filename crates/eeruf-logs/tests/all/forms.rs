@@ -321,7 +321,7 @@ fn tried(file: &str) -> (usize, Vec<String>, Vec<String>) {
 }
 
 // At first sight the second forty were 30 right and 8 silently wrong, the third 28 and 10; of the 202 of trial 4 the
-// first forty 25 and 10, then 36 and 5, 31 and 4, 34 and 6, 34 and 4. The reader was mended after each. Two are not kept:
+// first forty 25 and 10, then 36 and 5, 31 and 4, 34 and 6, 34 and 4. The reader was mended each time. Not kept:
 // four columns of whole numbers without a name, of which two are no ranges, and a ceiling of 255 that comes twice.
 #[test]
 fn forms_of_trials_are_mostly_right() {

@@ -121,6 +121,9 @@ pub(crate) fn watched(what: String) -> impl Fn(f64) -> bool + Sync {
 /// Asked now and then with the share that is done, 0 to 1.
 pub(crate) type Watched<'a> = &'a (dyn Fn(f64) -> bool + Sync);
 
+/// The number of seeds done, and for each method its runs.
+type Done<R> = (u64, Vec<Vec<R>>);
+
 impl Common {
     /// Runs an experiment in blocks of seeds until all are done or Ctrl-C stops it; `run` gets a block's first seed and
     /// length. Returns the number of seeds done and for each method its runs; `None` if it printed the part of a shard.
@@ -134,7 +137,7 @@ impl Common {
         methods: &[Entry],
         (mut first, mut seeds): (u64, u64),
         run: impl Fn(u64, u64, Watched<'_>) -> Result<Vec<Vec<R>>, ExperimentError>,
-    ) -> Result<Option<(u64, Vec<Vec<R>>)>, InputError> {
+    ) -> Result<Option<Done<R>>, InputError> {
         let bad = bad(set);
         if let Some(shard) = self.shard {
             (first, seeds) = shard.seeds(first, seeds).map_err(|error| bad(&error))?;

@@ -242,7 +242,9 @@ def recommend(
     rooms: dict[str, _eeruf.Scene] | None = None,
     places: int = 6,
     first: int = 0,
-    all_ways: bool = False,
+    driving: bool = False,
+    wrong: float = 0.03,
+    cost: bool = False,
     progress: _Progress = None,
 ) -> dict[str, Any]:
     r"""Judge the ways of firing a ring in rooms, and recommend one, as ``eeruf study RING.toml --json`` does.
@@ -253,15 +255,16 @@ def recommend(
             eight kinds.
         places: rooms of each kind, 1 to 1,000.
         first: the number of the first room of each kind; ways are chosen on numbers below 2,000, and reported from :data:`FIRST` on.
-        all_ways: whether to measure every way, and to say what the answer is beside others and with the other gain; takes minutes.
+        driving: whether the robot drives.
+        wrong: the largest share of foreign sound in what is believed, of a way that is recommended.
+        cost: whether to say what each kind of way costs, as ``--cost`` does; takes minutes, not with ``rooms``.
         progress: True for a bar (tqdm if it is installed), or a callable that takes the share done and a text.
 
     Returns:
-        ``recommended``, the name of the way; ``keeps``, whether it has at most one false stop a minute under each condition in which
-        the file says that the ring is used; ``draw``, a kind of way that may be better; ``assumed``, where the file is silent;
-        ``kinds``, each with its ``cost`` (how soon it sees what appears; the best one by one is 1) and the ``best`` way under each
-        condition with its figures; ``elsewhere``, the kind to recommend under each condition by itself; ``ways``, every way, if
-        asked for.
+        ``recommended``, the name of the way; ``keeps``, whether it keeps to the limits in each kind of room; ``assumed``, where the file
+        is silent; ``ways``, each with ``way``, ``title`` and ``rooms``, its figures by kind; ``elsewhere``, the same under other gain
+        and height; ``by_cost``, if asked for, the kinds of ways by how soon the ring sees what appears, under the conditions that
+        the file names.
 
     Raises:
         ArgumentError: a number is out of range, or the file cannot be read or does not say where its sensors are.
@@ -272,11 +275,11 @@ def recommend(
         >>> ring = pathlib.Path(tempfile.mkdtemp(), "ring.toml")
         >>> _ = ring.write_text("sensors = 4\nmodule = 'hc-sr04'\nlayout = 'ring'")
         >>> answer = eeruf.experiments.recommend(ring, places=1)
-        >>> answer["kinds"][0]["kind"], [way["condition"] for way in answer["kinds"][0]["best"]]
-        ('one by one', ['standing', 'driving', 'turning'])
+        >>> answer["ways"][0]["way"], sorted(answer["ways"][0]["rooms"])[:2]
+        ('sequential', ['aisle', 'alcove'])
         >>> walls = [[-2, -2, 2, -2], [2, -2, 2, 2], [2, 2, -2, 2], [-2, 2, -2, -2]]
         >>> box = eeruf.sim.Scene(walls, robots=[eeruf.sim.Robot((0, 0, 0), sensors=[(0.2, 0, 0)])])
-        >>> list(eeruf.experiments.recommend(ring, rooms={"box": box}, places=1)["kinds"][0]["best"][0]["rooms"])
+        >>> list(eeruf.experiments.recommend(ring, rooms={"box": box})["ways"][0]["rooms"])
         ['box']
 
     """
@@ -284,7 +287,9 @@ def recommend(
         "rooms": rooms,
         "places": places,
         "first": first,
-        "all_ways": all_ways,
+        "driving": driving,
+        "wrong": wrong,
+        "cost": cost,
     }
     answer: dict[str, Any] = json.loads(_eeruf._recommend(ring, asked, progress))
     return answer

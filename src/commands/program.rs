@@ -6,7 +6,6 @@ use clap::ValueEnum;
 use clap::builder::PossibleValue;
 use eeruf_design::{RingDesign, Way};
 use eeruf_files::Kind;
-use eeruf_sim::Robot;
 
 use super::Answer;
 use super::rooms::{self, RoomArgs};
@@ -33,9 +32,9 @@ pub(crate) struct ProgramArgs {
     /// The program's folder; by default one with the ring file's name
     #[arg(long, value_name = "DIR", requires = "program")]
     out: Option<PathBuf>,
-    /// The way of firing of the program or, with --emit, of the settings; by default the one that is recommended, and
-    /// nothing is judged in rooms if it is given
-    #[arg(long, value_enum, value_name = "WAY", conflicts_with_all = ["json", "period", "curve", "period_only"])]
+    /// The program's way of firing; by default the one that is recommended, and nothing is judged in rooms if it is
+    /// given
+    #[arg(long, value_enum, value_name = "WAY", requires = "program")]
     way: Option<Named>,
 }
 
@@ -53,26 +52,6 @@ impl ValueEnum for Named {
     }
 }
 
-impl ProgramArgs {
-    /// The way of firing with the robot that fires so: the one asked for, else the one that is recommended; or why
-    /// that cannot be said.
-    pub(crate) fn fires(
-        &self,
-        design: &RingDesign,
-        in_rooms: &RoomArgs,
-        watch: &mut Watch,
-    ) -> Result<Result<(Way, Robot), String>, InputError> {
-        if let Some(Named(way)) = self.way {
-            return Ok(design.spec.room_robot().map(|of| (way, of.robot)));
-        }
-        let none = || "no way can fire this ring; `eeruf design` says why".to_owned();
-        Ok(rooms::judged(in_rooms, &design.spec, Some(design), false, watch)?.and_then(|answer| {
-            let best = answer.best.ok_or_else(none)?;
-            Ok((Way::of(&best).ok_or_else(none)?, best.robot))
-        }))
-    }
-}
-
 /// Writes the program, and says what it is and what to do with it.
 pub(crate) fn run(
     args: &ProgramArgs,
@@ -82,18 +61,20 @@ pub(crate) fn run(
     watch: &mut Watch,
 ) -> Result<Answer, InputError> {
     let bad = |why: String| InputError::new(file, why);
-    let (mut way, robot) = args.fires(design, in_rooms, watch)?.map_err(bad)?;
+    let way = match args.way {
+        Some(Named(way)) => way,
+        None => {
+            let best = rooms::recommended(in_rooms, &design.spec, design, watch)?.map_err(bad)?;
+            let none = || bad("no way can fire this ring; `eeruf design` says why".to_owned());
+            best.as_ref().and_then(Way::of).ok_or_else(none)?
+        }
+    };
     let folder = args.out.clone().unwrap_or_else(|| PathBuf::from(file.file_stem().unwrap_or_default()));
     let name = plain(&folder);
     let (text, shown) = (Kind::Ring.read(file)?, file.file_name().unwrap_or_default().to_string_lossy());
-    let wanted = |way| Wanted { file: (&shown, &text), design, robot: &robot, way, mavlink: args.mavlink, name: &name };
-    let mut written = program(&wanted(way), language, args.board);
-    // Flow is what a program has in every language.
-    if written.is_err() && args.way.is_none() {
-        way = Way::Flow;
-        written = program(&wanted(way), language, args.board);
-    }
-    let program = written.map_err(bad)?;
+    let robot = design.spec.room_robot().map_err(bad)?.robot;
+    let wanted = Wanted { file: (&shown, &text), design, robot: &robot, way, mavlink: args.mavlink, name: &name };
+    let program = program(&wanted, language, args.board).map_err(bad)?;
     // What somebody may have changed by hand stays.
     let there = program.files.iter().map(|(path, _)| folder.join(path)).find(|path| path.exists());
     if let Some(there) = there {

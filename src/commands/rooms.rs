@@ -4,17 +4,21 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use eeruf_design::{RingDesign, RingSpec, RoomsAnswer, RoomsAsked};
+use eeruf_design::{CHOICE, RingDesign, RingSpec, RoomsAnswer, RoomsAsked};
 use eeruf_files::{FileError, Kind};
-use eeruf_sim::experiments::rooms::RoomGroup;
+use eeruf_sim::experiments::measure::{
+    Condition, Family, MeasureAsked, MeasuredWay, Moving, Speeds, measure, measured_ways,
+};
+use eeruf_sim::experiments::rooms::{RoomGroup, RoomWay};
 
 use super::{Answer, show};
+use crate::console::tell;
 use crate::files::error::InputError;
-use crate::files::implausible::warn;
 use crate::files::map::read_map;
 use crate::files::ring::read_ring;
 use crate::files::toml::read_world;
 use crate::report::rooms::{RoomsOrNot, describe, describe_all};
+use crate::report::three::Three;
 use crate::report::watch::Watch;
 
 /// Options for judging ways of firing in rooms.
@@ -32,12 +36,18 @@ pub(crate) struct RoomArgs {
     #[arg(long, hide_short_help = true, value_name = "N")]
     #[arg(value_parser = clap::value_parser!(u64).range(..=1_000_000_000))]
     first: Option<u64>,
-    #[arg(long, hide = true, value_name = "PERCENT")]
-    wrong: Option<String>,
-    #[arg(long, hide = true)]
+    /// The largest share of foreign sound in what is believed, in per cent, of a way that is recommended; 3 by
+    /// default
+    #[arg(long, hide_short_help = true, value_name = "PERCENT", value_parser = percent)]
+    wrong: Option<f64>,
+    /// Let the robot drive through the rooms at the ring's speed_m_s, or 0.3 m/s
+    #[arg(long, hide_short_help = true)]
     driving: bool,
-    #[arg(long, hide = true)]
-    cost: bool,
+}
+
+fn percent(text: &str) -> Result<f64, String> {
+    let number = text.parse().ok().filter(|number| (0.0..=100.0).contains(number));
+    number.ok_or_else(|| "expected a number from 0 to 100".to_owned())
 }
 
 impl RoomArgs {
@@ -47,31 +57,76 @@ impl RoomArgs {
             ("--rooms", !self.rooms.is_empty()),
             ("--places", self.places.is_some()),
             ("--first", self.first.is_some()),
+            ("--wrong", self.wrong.is_some()),
+            ("--driving", self.driving),
         ];
-        given.into_iter().chain(self.without_effect()).find(|(_, given)| *given).map(|(name, _)| name)
-    }
-
-    fn without_effect(&self) -> [(&'static str, bool); 3] {
-        [("--wrong", self.wrong.is_some()), ("--driving", self.driving), ("--cost", self.cost)]
+        given.into_iter().find(|(_, given)| *given).map(|(name, _)| name)
     }
 }
 
-/// Judges a ring file's ways of firing, without a word of its period: `eeruf study RING.toml`. With `all` or rooms of
-/// the user's own it prints every way under each condition.
-pub(crate) fn study(args: &RoomArgs, file: &Path, as_json: bool, all: bool) -> Result<Answer, InputError> {
+/// Measures a ring file's ways of firing, without a word of its period: `eeruf study RING.toml`. With `all` or rooms
+/// of the user's own it prints every way in every kind of room, with `cost` what the kinds of ways cost.
+pub(crate) fn study(args: &RoomArgs, file: &Path, as_json: bool, all: bool, cost: bool) -> Result<Answer, InputError> {
     let spec = read_ring(file)?;
     let mut watch = Watch::new();
     let design = spec.shortest_to_study().map_err(|error| InputError::new(file, error))?;
-    let all = all || !args.rooms.is_empty();
-    let judged = judged(args, &spec, design.as_ref(), all, &mut watch)?;
-    drop(watch);
     let name = file.display().to_string();
-    let more = || match (&judged, all) {
-        (Ok(_), false) => "`eeruf design` says how to get it, `--all` every way.\n".to_owned(),
-        _ => describe_all(&judged),
+    if as_json || all || cost || !args.rooms.is_empty() {
+        let mut judged = judged(args, &spec, design.as_ref(), &mut watch)?;
+        // In rooms of the user's own nothing appears.
+        if let Some(answer) = judged.as_mut().ok().filter(|_| cost && args.rooms.is_empty()) {
+            let (asked, watch) = (asked(args, &spec)?, Mutex::new(&mut watch));
+            answer.by_cost = spec.cost_in_rooms(design.as_ref(), &asked, &|share| goes_on(&watch, share)).ok();
+        }
+        drop(watch);
+        show(as_json, || RoomsOrNot::of(&judged), || describe(&name, &judged) + &describe_all(&judged))?;
+        return Ok(if judged.is_ok() { Answer::Yes } else { Answer::No });
+    }
+    match three_ways(args, &spec, design.as_ref(), &mut watch)? {
+        Ok(text) => tell(format!("{name}: {text}")).map(|()| Answer::Yes),
+        Err(why) => tell(format!("{name}: not judged in rooms: {why}.\n")).map(|()| Answer::No),
+    }
+    .map_err(InputError::from)
+}
+
+/// The recommended way beside one by one, in rooms; or why that cannot be said.
+fn three_ways(
+    args: &RoomArgs,
+    spec: &RingSpec,
+    design: Option<&RingDesign>,
+    watch: &mut Watch,
+) -> Result<Result<String, String>, InputError> {
+    let asked = asked(args, spec)?;
+    let watch = Mutex::new(watch);
+    let found = spec.recommended_in_rooms(design, &asked, &|share| goes_on(&watch, share));
+    let robot = design.map_or(spec, |design| &design.spec).room_robot();
+    let (best, robot) = match found.and_then(|best| Ok((best, robot?.robot))) {
+        Ok((Some(best), robot)) => (best, robot),
+        Ok((None, _)) => return Ok(Err("no way of firing is possible for this ring".to_owned())),
+        Err(why) => return Ok(Err(why)),
     };
-    show(as_json, || RoomsOrNot::of(&judged), || describe(&name, &judged) + &more())?;
-    Ok(if judged.is_ok() { Answer::Yes } else { Answer::No })
+    let ways = measured_ways(&robot, design.map(|design| &design.schedule));
+    let of_best = ways.iter().find(|way| way.way.name == best.name).map_or(Family::OneByOne, |way| way.family);
+    let other = if of_best == Family::OneByOne { Family::Flow } else { of_best };
+    let name = if of_best == Family::OneByOne { "flow" } else { best.name };
+    let is_shown = |way: &MeasuredWay| way.family == Family::OneByOne || way.way.name == name;
+    let ways: Vec<_> = ways.into_iter().filter(is_shown).map(|way| (way, None)).collect();
+    let moving = if asked.driving { Moving::Driving } else { Moving::Standing };
+    let speeds = Speeds { speed_m_s: spec.room_speed_m_s(), turn_rad_s: 0.0 };
+    let measured = |first: u64| {
+        let conditions = vec![Condition { moving, others: false }];
+        let asked = MeasureAsked { conditions, first, places: asked.places, speeds };
+        measure(&ways, &asked, &|share| goes_on(&watch, share)).map_err(|error| error.to_string())
+    };
+    let both = measured(CHOICE).and_then(|chosen| Ok((chosen, measured(asked.first)?)));
+    Ok(both.map(|(chosen, measured)| {
+        let rooms = measured.under.first().map_or(0, |under| under.places.len());
+        let moves = if asked.driving { "driving" } else { "standing" };
+        let title = format!("{} sensors; in {rooms} rooms, {moves}, a thing appears.\n\n", spec.sensors);
+        let is_recommended = Some(of_best != Family::OneByOne);
+        let three = Three { chosen: &chosen, measured: &measured, other, is_recommended };
+        title + &three.describe() + "`eeruf design` says how to get it, `--all` every way in every room.\n"
+    }))
 }
 
 /// Judges the ways of firing a ring, with the schedule of two phases that was found for it; or says why that cannot be
@@ -80,20 +135,37 @@ pub(crate) fn judged(
     args: &RoomArgs,
     spec: &RingSpec,
     design: Option<&RingDesign>,
-    all: bool,
     watch: &mut Watch,
 ) -> Result<Result<RoomsAnswer, String>, InputError> {
-    for (name, _) in args.without_effect().into_iter().filter(|(_, given)| *given) {
-        let used = "a ring is judged standing, driving and turning, as its file says it is used";
-        warn(InputError::new(name, format!("no effect; {used}")))?;
-    }
+    let asked = asked(args, spec)?;
+    let watch = Mutex::new(watch);
+    Ok(spec.judge_in_rooms(design, &asked, &|share| goes_on(&watch, share)))
+}
+
+/// The way of firing a ring to recommend, as [`judged`] finds it; or why that cannot be said.
+pub(crate) fn recommended(
+    args: &RoomArgs,
+    spec: &RingSpec,
+    design: &RingDesign,
+    watch: &mut Watch,
+) -> Result<Result<Option<RoomWay>, String>, InputError> {
+    let asked = asked(args, spec)?;
+    let watch = Mutex::new(watch);
+    Ok(spec.recommended_in_rooms(Some(design), &asked, &|share| goes_on(&watch, share)))
+}
+
+fn asked(args: &RoomArgs, spec: &RingSpec) -> Result<RoomsAsked, InputError> {
     let default = RoomsAsked::default();
     let (places, first) = (args.places.unwrap_or(default.places), args.first.unwrap_or(default.first));
     // A ring without places is refused where it is judged.
     let radius_m = spec.room_robot().map_or(0.0, |robot| robot.robot.radius_m());
-    let own = own_rooms(&args.rooms, first..first.saturating_add(places), radius_m)?;
-    let watch = Mutex::new(watch);
-    Ok(spec.judge_in_rooms(design, &RoomsAsked { own, places, first, all }, &|share| goes_on(&watch, share)))
+    Ok(RoomsAsked {
+        own: own_rooms(&args.rooms, first..first.saturating_add(places), radius_m)?,
+        places,
+        first,
+        driving: args.driving,
+        wrong: args.wrong.map_or(default.wrong, |percent| percent / 100.0),
+    })
 }
 
 fn goes_on(watch: &Mutex<&mut Watch>, share: f64) -> bool {

@@ -1,4 +1,5 @@
-//! The answer of `study` for a scene: firing as sketches do, the best one by one and flow, a row each, and what to do.
+//! The answer of `study`: firing as sketches do, the best one by one and the recommended way, a row each, and what to
+//! do.
 
 use std::fmt::Write as _;
 
@@ -10,14 +11,39 @@ use super::table::markdown;
 pub(crate) struct Three<'a> {
     pub(crate) chosen: &'a Measured,
     pub(crate) measured: &'a Measured,
+    /// The family of the way beside one by one.
+    pub(crate) other: Family,
+    /// True if the other way is recommended; `None` lets the measurement decide.
+    pub(crate) is_recommended: Option<bool>,
+}
+
+/// A way of firing in words.
+fn in_words(name: &str, setting: Setting) -> String {
+    let way = match name {
+        "blocking" if setting == Setting::ALL[0] => "blocking, as sketches fire",
+        "blocking" => "one by one, in a loop",
+        "in_turn" => "one by one, after an echo",
+        "sequential" => "one by one, after the sound",
+        "one_by_one_10ms" => "one by one, 10 ms apart",
+        "one_by_one_20ms" => "one by one, 20 ms apart",
+        "one_by_one_33ms" => "one by one, 33 ms apart",
+        "far_groups" => "groups, far apart",
+        "eeruf" => "two phases (EERUF)",
+        _ => name,
+    };
+    match setting {
+        Setting::Votes { m: 1, .. } => way.to_owned(),
+        Setting::Votes { m, n } => format!("{way}, {m} of {n}"),
+        Setting::Median => format!("{way}, median"),
+    }
 }
 
 /// A 95th percentile in words, for sentences and tables.
-pub(super) fn t95(cell: &Cell) -> String {
+fn t95(cell: &Cell) -> String {
     if cell.t95_ms.value.is_finite() { format!("{:.0}", cell.t95_ms.value) } else { "never".to_owned() }
 }
 
-pub(super) fn stops(cell: &Cell) -> String {
+fn stops(cell: &Cell) -> String {
     match cell.false_stops {
         0 => format!("< {:.1}", 3.0 / cell.minutes),
         _ => format!("{:.1}", cell.false_stops_per_min.value),
@@ -27,7 +53,7 @@ pub(super) fn stops(cell: &Cell) -> String {
 impl Three<'_> {
     /// The table, what its columns are, and what to do.
     pub(crate) fn describe(&self) -> String {
-        let Self { chosen, measured } = *self;
+        let Self { chosen, measured, other, is_recommended } = *self;
         let (Some(under), Some(chooses)) = (measured.under.first(), chosen.under.first()) else {
             return String::new();
         };
@@ -35,12 +61,12 @@ impl Three<'_> {
         let group = |family: Family| -> Vec<usize> {
             (0..measured.ways.len()).filter(|&way| measured.ways[way].family == family).collect()
         };
-        let costs = measured.costs(chosen, &[Family::OneByOne, Family::Flow].map(group));
-        let is_other = costs.recommended.map(|index| index == 1);
-        let blocking = measured.ways.iter().position(|way| way.name == "blocking");
+        let costs = measured.costs(chosen, &[group(Family::OneByOne), group(other)]);
+        let is_other = is_recommended.or(costs.recommended.map(|index| index == 1));
+        let blocking = measured.ways.iter().position(|way| way.way.name == "blocking");
         let blocking = blocking.map(|way| Point { way, setting: Setting::ALL[0] });
-        let [one_by_one, other] = [Family::OneByOne, Family::Flow].map(|family| of(family).map(Operating::point));
-        let name = |point: Point| measured.ways[point.way].in_words(point.setting);
+        let [one_by_one, other] = [Family::OneByOne, other].map(|family| of(family).map(Operating::point));
+        let name = |point: Point| in_words(measured.ways[point.way].way.name, point.setting);
         let cell = |point: Point| under.cell(point, measured);
         let row = |point: Point| {
             let cell = cell(point);

@@ -133,7 +133,7 @@ fn pictures_are_drawn_and_say_what_they_show() {
         ("timing.svg", vec!["eeruf: two periods as they happened", "crosstalk, rejected", "time, ms"]),
         ("readings.svg", vec!["What sensor ", "range, m", "time, s", "rejected"]),
         ("methods.svg", [&methods()[..], &["good lost", "readings a second"]].concat()),
-        ("blind.svg", [&methods()[..], &["Blind sensors (red)"]].concat()),
+        ("blind.svg", [&methods()[..], &["Blind sensors (red)", "flow is the way recommended"]].concat()),
     ] {
         let svg = picture(name);
         assert!(svg.starts_with("<svg") && svg.trim_end().ends_with("</svg>"), "{name}");

@@ -1,8 +1,8 @@
 //! Rooms that a ring is judged in.
 
-use eeruf_sim::experiments::rooms::RoomGroup;
+use eeruf_sim::experiments::rooms::{RoomGroup, RoomsOptions};
 
-/// Rooms for judging ways of firing.
+/// Rooms and limits for judging ways of firing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RoomsAsked {
     /// Rooms of the caller's own; none for those of the set.
@@ -12,12 +12,14 @@ pub struct RoomsAsked {
     /// Number of the first room of each kind. The default is 0: ways are chosen on numbers below 2,000, and reported
     /// from 20,000 on.
     pub first: u64,
-    /// True to measure every way, and what the answer would be beside others and with the other gain.
-    pub all: bool,
+    /// True for a robot that drives, at the ring's `speed_m_s` or 0.3 m/s.
+    pub driving: bool,
+    /// The largest share of foreign sound in what is believed, of a way that is recommended. The default is 0.03.
+    pub wrong: f64,
 }
 
 impl Default for RoomsAsked {
     fn default() -> Self {
-        Self { own: vec![], places: 6, first: 0, all: false }
+        Self { own: vec![], places: 6, first: 0, driving: false, wrong: RoomsOptions::default().wrong }
     }
 }

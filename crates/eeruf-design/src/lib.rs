@@ -79,9 +79,9 @@ pub use what_if::WhatIf;
 #[cfg(feature = "rooms")]
 pub use {
     asked::RoomsAsked,
-    cost::{CHOICE, JudgedWay, KindCost, RoomsAnswer},
+    cost::{BestWay, CHOICE, CostAnswer, KindCost},
     flow::{FlowDesign, needs_to_see_m, turns_of},
-    rooms::RoomRobot,
+    rooms::{RoomRobot, RoomsAnswer, RoomsJson},
     way::{How, Way},
 };
 

@@ -55,7 +55,7 @@ pub(crate) fn programs(short: bool) -> Result<()> {
             continue;
         }
         let out = folder.join(format!("ring_{number}"));
-        let words = if options.contains("--way") { (*options).to_owned() } else { format!("{options} --way flow") };
+        let words = format!("{options} --places 1");
         let mut design = Command::new(program()?);
         design.args(["design", ring, "--program"]).args(words.split(' ')).arg("--out").arg(&out);
         output(&mut design).with_context(|| format!("{ring}: {options}"))?;

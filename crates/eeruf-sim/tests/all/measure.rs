@@ -3,8 +3,10 @@
 use std::f64::consts::TAU;
 
 use eeruf_sim::experiments::measure::{
-    Cell, Condition, Control, MeasureAsked, Measured, NEVER_S, ONE_A_MINUTE, Point, RoomWay, Setting, Speeds, measure,
+    Cell, Condition, Control, MeasureAsked, Measured, MeasuredWay, NEVER_S, ONE_A_MINUTE, Point, Setting, Speeds,
+    measure, measured_ways,
 };
+use eeruf_sim::experiments::rooms::RoomWay;
 use eeruf_sim::modules::HC_SR04;
 use eeruf_sim::{Method, Pose, Robot, Transducer};
 
@@ -15,12 +17,12 @@ fn robot() -> Robot {
     Robot { window: eeruf_core::Micros::new(23_311), ..ring.with_modules(vec![HC_SR04; 8]) }
 }
 
-fn way(name: &str) -> RoomWay {
-    RoomWay::all(&robot(), None).into_iter().find(|way| way.name == name).unwrap()
+fn way(name: &str) -> MeasuredWay {
+    measured_ways(&robot(), None).into_iter().find(|way| way.way.name == name).unwrap()
 }
 
-fn run(ways: &[(RoomWay, Option<Control>)], conditions: &[Condition], first: u64, places: u64) -> Measured {
-    let asked = MeasureAsked { conditions: conditions.into(), own: vec![], first, places, speeds: SPEEDS };
+fn run(ways: &[(MeasuredWay, Option<Control>)], conditions: &[Condition], first: u64, places: u64) -> Measured {
+    let asked = MeasureAsked { conditions: conditions.into(), first, places, speeds: SPEEDS };
     measure(ways, &asked, &|_| true).unwrap()
 }
 
@@ -30,7 +32,8 @@ const EAGER: Setting = Setting::Votes { m: 1, n: 1 };
 fn controls_rank_as_they_must_in_every_condition() {
     let sound = way("one_by_one_33ms");
     let quick = way("one_by_one_10ms");
-    let at_once = RoomWay { name: "simultaneous", method: Method::Simultaneous, ..way("sequential") };
+    let at_once = RoomWay { name: "simultaneous", method: Method::Simultaneous, ..way("sequential").way };
+    let at_once = MeasuredWay { way: at_once, ..sound.clone() };
     let ways = [
         (sound.clone(), None),
         (sound.clone(), Some(Control::Never)),

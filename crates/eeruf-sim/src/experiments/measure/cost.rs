@@ -7,7 +7,7 @@ use super::run::{Measured, Under};
 use super::sight::Sight;
 use super::trial::Condition;
 use super::votes::Setting;
-use super::ways::{Family, RoomWay};
+use super::ways::{Family, MeasuredWay};
 
 /// The most false stops a minute at which ways are compared.
 pub const ONE_A_MINUTE: f64 = 1.0;
@@ -71,7 +71,7 @@ pub struct Cell {
 impl Under {
     /// The settings of some of the ways that can fire the ring. A median is for one by one alone.
     fn points(&self, measured: &Measured, ways: impl Fn(usize) -> bool) -> Vec<Point> {
-        let of_way = |(way, of): (usize, &RoomWay)| {
+        let of_way = |(way, of): (usize, &MeasuredWay)| {
             let fits = |it: &Setting| of.family == Family::OneByOne || *it != Setting::Median;
             Setting::ALL.into_iter().filter(fits).map(move |setting| Point { way, setting }).collect::<Vec<_>>()
         };
@@ -189,36 +189,16 @@ impl Measured {
         Estimate::of(&logs.iter().map(|sum| libm::exp(sum / conditions)).collect::<Vec<_>>())
     }
 
-    /// Returns true if there are surely more false stops than one a minute, whatever was chosen.
-    fn surely_stops(&self, under: &Under, point: Point) -> bool {
-        let sights = under.sights(point);
-        let rates = self.bootstrap(under.condition).figures(|counts| rate(sights, counts));
-        Estimate::of(&rates).interval_95[0] > ONE_A_MINUTE
-    }
-
-    /// The ways that are the best of their family under some condition.
-    pub fn best_of_families(&self) -> Vec<usize> {
-        let of = |under: &Under, family: Family| {
-            under.operating(self, |way| self.ways[way].family == family, ONE_A_MINUTE).map(|of| of.point().way)
-        };
-        self.under.iter().flat_map(|under| Family::ALL.into_iter().filter_map(|family| of(under, family))).collect()
-    }
-
     /// The costs of groups of ways with points chosen in other rooms of the same conditions, and the group to
-    /// recommend: that of the least cost, or a simpler one from which it does not surely differ. One that surely has more
-    /// than one false stop a minute here has no point.
+    /// recommend: that of the least cost, or a simpler one from which it does not surely differ.
     pub fn costs(&self, chosen: &Self, groups: &[Vec<usize>]) -> Costs {
         let operating = |group: &Vec<usize>| -> Vec<Operating> {
             let of = |under: &Under| under.operating(chosen, |way| group.contains(&way), ONE_A_MINUTE);
             chosen.under.iter().filter_map(of).collect()
         };
         let keeping = |operating: &Vec<Operating>| -> Option<Vec<Point>> {
-            let at = |(operating, under): (&Operating, &Under)| match operating {
-                Operating::At(point) if !self.surely_stops(under, *point) => Some(*point),
-                _ => None,
-            };
-            let points = operating.iter().zip(&self.under).map(at).collect::<Option<Vec<_>>>();
-            points.filter(|points| points.len() == self.under.len())
+            let at = |operating: &Operating| if let Operating::At(point) = operating { Some(*point) } else { None };
+            operating.iter().map(at).collect::<Option<Vec<_>>>().filter(|points| points.len() == self.under.len())
         };
         let operating: Vec<_> = groups.iter().map(operating).collect();
         let points: Vec<_> = operating.iter().map(keeping).collect();

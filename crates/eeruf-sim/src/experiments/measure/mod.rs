@@ -44,4 +44,4 @@ pub use sight::Sight;
 pub use things::{Draws, ThingKind};
 pub use trial::{Condition, Moving, NEVER_S, Speeds, VERSION};
 pub use votes::Setting;
-pub use ways::{Family, RoomWay, with_other_gain};
+pub use ways::{Family, MeasuredWay, measured_ways};

@@ -49,7 +49,13 @@ impl Trial {
         let of_sensor = |sensor| heard.iter().filter(move |one| one.sensor == sensor).copied().collect::<Vec<_>>();
         let by_sensor: Vec<Vec<Heard>> = (0..sensors).map(of_sensor).collect();
         let beliefs: Vec<Vec<Believed>> = by_sensor.iter().map(|heard| believed(heard, setting, life_s)).collect();
-        let latency_ms = self.latency_ms(robot, beliefs.iter().flatten());
+        let mut seen: Vec<&Believed> = beliefs.iter().flatten().collect();
+        seen.sort_by(|one, other| one.heard.ready_s.total_cmp(&other.heard.ready_s));
+        let latency_ms = self.thing.as_ref().map_or(f64::NAN, |_| {
+            let first = seen.iter().find(|belief| self.sees(robot, belief));
+            let late_s = first.map_or(f64::INFINITY, |belief| belief.heard.ready_s - self.appears_s);
+            if late_s > NEVER_S { f64::INFINITY } else { 1e3 * late_s }
+        });
         let mut false_ones: Vec<[f64; 2]> = vec![];
         let (mut foreign_s, mut right_s, mut echo_s) = (0.0, 0.0, 0.0);
         let (mut blind, mut right_echoes) = (0, 0);
@@ -63,7 +69,7 @@ impl Trial {
                     false_ones.push(lasts);
                 }
             }
-            let (mut right, mut watched) = (0, 0);
+            let mut right = 0;
             let mut beliefs = beliefs.iter().peekable();
             let mut belief: Option<&Believed> = None;
             for (k, reading) in heard.iter().enumerate().take_while(|(_, reading)| reading.ready_s < self.appears_s) {
@@ -74,7 +80,6 @@ impl Trial {
                 let next_s = heard.get(k + 1).map_or(self.appears_s, |next| next.ready_s.min(self.appears_s));
                 let is_right = belief.is_some_and(|belief| agree(belief.t_echo_us, reading.reference_us));
                 right += usize::from(is_right);
-                watched += 1;
                 if !reading.reference_us.is_nan() {
                     right_echoes += usize::from(is_right && is_new);
                     echo_s += next_s - reading.ready_s;
@@ -82,7 +87,7 @@ impl Trial {
                     right_s += if is_right { (until_s - reading.ready_s).max(0.0) } else { 0.0 };
                 }
             }
-            blind += u32::from((right as f64) < BLIND * f64::from(watched));
+            blind += u32::from((right as f64) < BLIND * heard.len() as f64);
         }
         Sight {
             latency_ms,
@@ -93,28 +98,6 @@ impl Trial {
             right_echoes_per_s: right_echoes as f64 / self.appears_s,
             blind,
         }
-    }
-
-    /// From the thing's appearing to the first of these beliefs in it.
-    fn latency_ms<'b>(&self, robot: &Robot, beliefs: impl Iterator<Item = &'b Believed>) -> f64 {
-        if self.thing.is_none() {
-            return f64::NAN;
-        }
-        let mut seen: Vec<_> = beliefs.collect();
-        seen.sort_by(|one, other| one.heard.ready_s.total_cmp(&other.heard.ready_s));
-        let first = seen.iter().find(|belief| self.sees(robot, belief));
-        let late_s = first.map_or(f64::INFINITY, |belief| belief.heard.ready_s - self.appears_s);
-        if late_s > NEVER_S { f64::INFINITY } else { 1e3 * late_s }
-    }
-
-    /// Returns true if every setting has seen the thing by these readings.
-    pub(super) fn is_seen(&self, robot: &Robot, heard: &[Heard]) -> bool {
-        Setting::ALL.iter().all(|&setting| {
-            let of_sensor = |sensor| heard.iter().filter(move |one| one.sensor == sensor).copied().collect::<Vec<_>>();
-            let beliefs = (0..robot.sensors.len())
-                .flat_map(|sensor| believed(&of_sensor(sensor), setting, Control::life_s(None, self.life_s())));
-            self.latency_ms(robot, beliefs.collect::<Vec<_>>().iter()).is_finite()
-        })
     }
 
     /// Returns true if it is a belief in the thing, of a sensor that alone would read it.

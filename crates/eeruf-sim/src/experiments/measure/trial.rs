@@ -6,11 +6,10 @@ use serde::Serialize;
 
 use super::heard::Heard;
 use super::things::{Draws, Thing};
-use super::ways::RoomWay;
 use crate::{
     acoustics::Physics,
     experiments::error::ExperimentError,
-    experiments::rooms::{RoomKind, RoomPlan},
+    experiments::rooms::{RoomKind, RoomPlan, RoomWay},
     geometry::Pose,
     methods::Method,
     results::Readings,
@@ -31,8 +30,6 @@ pub const NEVER_S: f64 = 5.0;
 const LONGEST_S: f64 = APPEARS_S[1] + NEVER_S;
 /// The key of what is random about trials, beside those of the kinds of rooms.
 const THING: u64 = 200;
-/// Times after the thing's appearing at which a trial may end, as it is seen, in seconds.
-const LOOKS_S: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 3.5];
 /// From one look for contact to the next, in seconds.
 const LOOK_S: f64 = 0.01;
 
@@ -116,13 +113,14 @@ pub(super) struct Trial {
 }
 
 impl Trial {
-    /// The trial of a room for a robot under a condition; the key is its kind's.
+    /// The trial of a room for a robot under a condition.
     pub(super) fn new(
-        (key, plan): (u64, RoomPlan),
+        (kind, number): (RoomKind, u64),
         robot: &Robot,
         condition: Condition,
         asked: Speeds,
     ) -> Result<Self, ExperimentError> {
+        let plan = RoomPlan::random(kind, number, robot.radius_m());
         let speeds = match condition.moving {
             Moving::Standing => Speeds { speed_m_s: 0.0, turn_rad_s: 0.0 },
             // A leg of its way lasts a second or more.
@@ -131,7 +129,7 @@ impl Trial {
             Moving::Driving => Speeds { speed_m_s: asked.speed_m_s.min(plan.way_m() / LONGEST_S), turn_rad_s: 0.0 },
             Moving::Turning => Speeds { speed_m_s: 0.0, ..asked },
         };
-        let mut random = Random::new(plan.number).of(THING + key).of(condition.moving as u64);
+        let mut random = Random::new(number).of(THING + kind as u64).of(condition.moving as u64);
         let appears_s = random.between(APPEARS_S[0], APPEARS_S[1]);
         let world = plan.moving(robot, speeds.speed_m_s, speeds.turn_rad_s)?;
         Ok(Self::drawn(plan, &world, speeds, appears_s, random))
@@ -185,18 +183,12 @@ impl Trial {
         (0.15 / speed_m_s).min(10f64.to_radians() / turn_rad_s.abs()).min(2.0)
     }
 
-    /// Readings of the first robot by a way of firing, in the order in which they were complete; if asked, no more
-    /// than are needed to see the thing.
-    pub(super) fn heard(
-        &self,
-        way: &RoomWay,
-        until_seen: bool,
-        keep_going: &dyn Fn() -> bool,
-    ) -> Result<Vec<Heard>, ExperimentError> {
+    /// Readings of the first robot by a way of firing, in the order in which they were complete.
+    pub(super) fn heard(&self, way: &RoomWay, keep_going: &dyn Fn() -> bool) -> Result<Vec<Heard>, ExperimentError> {
         let Speeds { speed_m_s, turn_rad_s } = self.speeds;
         let world = self.plan.moving(&way.robot, speed_m_s, turn_rad_s)?.with_room(Some(Room::DEFAULT))?;
         let world = Arc::new(world.with_physics(Physics::DEFAULT)?);
-        self.heard_in(&world, (way.method, &way.options), |thing, _| thing.scene(&self.plan), until_seen, keep_going)
+        self.heard_in(&world, (way.method, &way.options), |thing, _| thing.scene(&self.plan), keep_going)
     }
 
     /// Readings in a scene of the caller's, by a method.
@@ -207,7 +199,7 @@ impl Trial {
         keep_going: &dyn Fn() -> bool,
     ) -> Result<Vec<Heard>, ExperimentError> {
         let options = Options { seed: Some(self.plan.number), ..Options::default() };
-        self.heard_in(&Arc::new(world.clone()), (method, &options), Thing::added_to, true, keep_going)
+        self.heard_in(&Arc::new(world.clone()), (method, &options), Thing::added_to, keep_going)
     }
 
     fn heard_in(
@@ -215,53 +207,30 @@ impl Trial {
         world: &Arc<World>,
         (method, options): (Method, &Options),
         with: impl Fn(&Thing, &Scene) -> Result<Scene, SceneError>,
-        until_seen: bool,
         keep_going: &dyn Fn() -> bool,
     ) -> Result<Vec<Heard>, ExperimentError> {
         let (speed_m_s, window) = (self.speeds.speed_m_s, world.robots()[0].window);
         let mut simulation = Simulation::new(Arc::clone(world), method, options, Stop::default())?;
+        // Ends of legs, and the thing's appearing.
         let legs = self.leg_s().map_or(0, |leg_s| (self.ends_s / leg_s) as u32);
-        let turns = (1..=legs).map(|leg| (self.leg_s().unwrap_or_default() * f64::from(leg), Event::Turns(leg)));
-        let looks = LOOKS_S.map(|late_s| (self.appears_s + late_s, Event::Looks)).into_iter();
-        let looks = looks.filter(|(at_s, _)| until_seen && *at_s < self.ends_s);
-        let ends = [(self.appears_s, Event::Appears), (self.ends_s, Event::Ends)];
-        let mut events: Vec<_> = turns.chain(looks).chain(ends).collect();
+        let turns = (1..=legs).map(|leg| (self.leg_s().unwrap_or_default() * f64::from(leg), Some(leg)));
+        let mut events: Vec<_> = turns.chain([(self.appears_s, None)]).collect();
         events.sort_by(|one, other| one.0.total_cmp(&other.0));
-        let mut heard: Vec<Heard> = vec![];
-        for (at_s, event) in events {
-            let part: Readings = simulation.step((at_s - simulation.time_s()).max(0.0), |_| keep_going())?;
-            heard.extend(Heard::all(&part, window));
-            match (event, &self.thing) {
-                (Event::Turns(leg), _) if leg % 2 == 1 => simulation.set_velocity(0, -speed_m_s, 0.0)?,
-                (Event::Turns(_), _) => simulation.set_velocity(0, speed_m_s, 0.0)?,
-                (Event::Appears, Some(thing)) => {
+        let mut parts: Vec<Readings> = vec![];
+        for (at_s, turn) in events {
+            parts.push(simulation.step((at_s - simulation.time_s()).max(0.0), |_| keep_going())?);
+            match (turn, &self.thing) {
+                (Some(leg), _) if leg % 2 == 1 => simulation.set_velocity(0, -speed_m_s, 0.0)?,
+                (Some(_), _) => simulation.set_velocity(0, speed_m_s, 0.0)?,
+                (None, Some(thing)) => {
                     simulation.change_scene(with(thing, world.scene()).map_err(WorldError::from)?)?;
                 }
-                (Event::Looks, _) if self.is_seen(&world.robots()[0], sorted(&mut heard)) => break,
-                (Event::Ends, _) => break,
-                (Event::Looks | Event::Appears, _) => {}
+                (None, None) => {}
             }
         }
-        sorted(&mut heard);
+        parts.push(simulation.step((self.ends_s - simulation.time_s()).max(0.0), |_| keep_going())?);
+        let mut heard: Vec<Heard> = parts.iter().flat_map(|part| Heard::all(part, window)).collect();
+        heard.sort_by(|one, other| one.ready_s.total_cmp(&other.ready_s));
         Ok(heard)
     }
-}
-
-/// An event of a trial.
-#[derive(Clone, Copy, Debug)]
-enum Event {
-    /// The robot is at the end of this leg of its way.
-    Turns(u32),
-    /// The thing appears.
-    Appears,
-    /// The trial ends if the thing is seen.
-    Looks,
-    /// The trial ends.
-    Ends,
-}
-
-/// Readings in the order in which they were complete.
-fn sorted(heard: &mut [Heard]) -> &[Heard] {
-    heard.sort_by(|one, other| one.ready_s.total_cmp(&other.ready_s));
-    heard
 }

@@ -1,11 +1,13 @@
-//! Rooms in which rings are judged.
+//! Rooms in which a ring is judged: which way of firing it is right most of the time.
 //!
 //! The paper's sets ask how a method does before three walls and among poles; whoever mounts a ring asks how it does in
-//! rooms like theirs. [`RoomPlan`] is a versioned set of rooms of eight [kinds](RoomKind), or a room of the caller's own;
-//! [`measure`](super::measure) runs each way of firing a ring in each.
+//! rooms like theirs. [`RoomPlan`] is a versioned set of rooms of eight [kinds](RoomKind), [`RoomWay`] the ways of
+//! firing one ring, baselines first, and [`judge`] runs each way in each room and recommends one.
 
-mod group;
+mod judge;
 mod plan;
+mod way;
 
-pub use group::RoomGroup;
+pub use judge::{JudgedWay, Judgement, RoomFigures, RoomGroup, RoomsOptions, judge, with_other_gain};
 pub use plan::{DRIVING_S, RoomKind, RoomPlan, UnknownRoom, VERSION};
+pub use way::{Condition, RoomWay};

@@ -1,0 +1,527 @@
+//! Ways of firing, judged in rooms, and the one to recommend.
+
+use eeruf_modules::Gain;
+use serde::Serialize;
+
+use super::plan::{DRIVING_S, RoomKind, RoomPlan};
+use super::way::{Condition, RoomWay};
+use crate::experiments::error::ExperimentError;
+use crate::experiments::progress::Progress;
+use crate::experiments::spread::Spread;
+use crate::{
+    acoustics::{GainProfile, Physics},
+    maps::OccupancyGrid,
+    results::{Belief, Readings, Summary, quantile},
+    scene::Room,
+    simulation::{Options, SimulationError, simulate_while},
+    threads::sweep,
+    world::{Robot, World},
+};
+
+/// Simulated time of each room for a robot that stands, in seconds: long against the first readings, before which
+/// nothing is believed.
+const STANDING_S: f64 = 20.0;
+
+/// Options of a judgement.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RoomsOptions {
+    /// The robot's speed in m/s; 0, the default, for one that stands.
+    pub speed_m_s: f64,
+    /// The modules' gain, and floor and ceiling.
+    pub condition: Condition,
+    /// The largest share of foreign sound in what is believed, at the median room of each kind, of a way that is
+    /// recommended. The default is 0.03.
+    pub wrong: f64,
+}
+
+impl Default for RoomsOptions {
+    fn default() -> Self {
+        Self { speed_m_s: 0.0, condition: Condition::ALL[0], wrong: 0.03 }
+    }
+}
+
+/// Rooms whose figures are summed up together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RoomGroup {
+    /// The name in tables and in JSON.
+    pub name: String,
+    /// The rooms.
+    pub rooms: Vec<RoomPlan>,
+}
+
+impl RoomGroup {
+    /// Rooms of one kind with consecutive numbers, for a robot that needs a circle of this radius. Ways are chosen on
+    /// numbers below 2,000, and reported from [`FIRST`](crate::experiments::FIRST) on.
+    pub fn of_kind(kind: RoomKind, numbers: core::ops::Range<u64>, radius_m: f64) -> Self {
+        let rooms = numbers.map(|number| RoomPlan::random(kind, number, radius_m)).collect();
+        Self { name: kind.to_string(), rooms }
+    }
+
+    /// The room of a world, for a ring that stands where the world's first robot does, and drives as far as that one
+    /// would; none for a world without a robot.
+    pub fn of_world(name: String, number: u64, world: &World) -> Option<Self> {
+        let robot = world.robots().first()?;
+        let way_m = robot.motion.at(&robot.pose, DRIVING_S).pose.translation.vector - robot.pose.translation.vector;
+        let scene = world.scene();
+        let plan = RoomPlan::own(number, scene.walls().to_vec(), scene.poles().to_vec(), robot.pose, way_m.norm());
+        Some(Self { name, rooms: vec![plan] })
+    }
+
+    /// Places in a map, as [`of_kind`](Self::of_kind) has rooms of a kind: half of the robots stand square to it. They
+    /// are drawn from what is known to be free.
+    ///
+    /// # Errors
+    /// The width for which no free space was found.
+    pub fn of_map(
+        name: String,
+        grid: &OccupancyGrid,
+        numbers: core::ops::Range<u64>,
+        radius_m: f64,
+    ) -> Result<Self, String> {
+        let (free, walls) = (grid.free_m(), grid.walls(grid.default_tolerance_m()));
+        let rooms = numbers.map(|number| {
+            RoomPlan::in_map(grid, &free, &walls, number, radius_m).ok_or_else(|| {
+                let cells = free.len();
+                format!(
+                    "{cells} free cells; expected some with space around them for a robot {:.2} m wide",
+                    2.0 * radius_m
+                )
+            })
+        });
+        Ok(Self { name, rooms: rooms.collect::<Result<_, _>>()? })
+    }
+}
+
+/// The figures of a way in rooms of one kind, of one robot: shares of time and rates are means, what a way is refused
+/// for is that of the median room.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct RoomFigures {
+    /// Shares of the time by what was last believed.
+    #[serde(flatten)]
+    pub belief: Belief,
+    /// The mean share that is right lies here with 95 % confidence.
+    pub belief_right_95: [f64; 2],
+    /// The least of these shares.
+    pub belief_right_worst: f64,
+    /// Accepted echoes that were right in a second.
+    pub right_echoes_per_s: f64,
+    /// This mean lies here with 95 % confidence.
+    pub right_echoes_per_s_95: [f64; 2],
+    /// Share of what was accepted that was foreign sound and wrong.
+    pub foreign_of_believed: f64,
+    /// Largest share of foreign sound among what a sensor believed.
+    pub foreign_of_believed_worst: f64,
+    /// Share of what was accepted that was the sensor's own sound and wrong.
+    pub own_wrong_of_believed: f64,
+    /// Sensors that were right under 5 % of the times they fired.
+    pub blind: f64,
+    /// 99 % of the time the last accepted reading is no older than this.
+    pub age_p99_ms: f64,
+}
+
+/// A way with its figures.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JudgedWay {
+    /// The way.
+    pub way: RoomWay,
+    /// The figures in each group of rooms, in the order asked for; or why it cannot fire this ring.
+    pub rooms: Result<Vec<RoomFigures>, String>,
+    /// Least and largest number of blind sensors in 90 % of all rooms judged. Zeros if it cannot fire the ring.
+    pub blind_90: [f64; 2],
+    /// 95 % confidence interval of [`echoes_against`](Self::echoes_against) the first way: for rooms of these kinds,
+    /// by how much they differ. None if one of the two cannot fire the ring, or no kind has two rooms.
+    pub times_95: Option<[f64; 2]>,
+}
+
+/// Ways of firing judged in rooms.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Judgement {
+    /// The ways, in the order asked for.
+    pub ways: Vec<JudgedWay>,
+    /// The index of the way to recommend, which a program has; none if no such way can fire the ring.
+    pub recommended: Option<usize>,
+    /// True if that keeps to the shares asked for in each kind of room.
+    pub keeps: bool,
+}
+
+impl Judgement {
+    /// The way to recommend.
+    pub fn best(&self) -> Option<&JudgedWay> {
+        self.recommended.and_then(|index| self.ways.get(index))
+    }
+
+    /// The judgement without some groups of rooms, named by their index; none if no group is left out, or none left.
+    /// [`JudgedWay::blind_90`] and [`JudgedWay::times_95`] stay those of all rooms.
+    pub fn without(&self, left_out: impl Fn(usize) -> bool, wrong: f64) -> Option<Self> {
+        let mut ways = self.ways.clone();
+        let mut fewer = false;
+        for rooms in ways.iter_mut().filter_map(|way| way.rooms.as_mut().ok()) {
+            let all = rooms.len();
+            let mut index = 0..all;
+            rooms.retain(|_| index.next().is_some_and(|index| !left_out(index)));
+            if rooms.is_empty() {
+                return None;
+            }
+            fewer |= rooms.len() < all;
+        }
+        let (recommended, keeps) = recommend(&ways, wrong);
+        fewer.then_some(Self { ways, recommended, keeps })
+    }
+}
+
+/// One room's figures.
+#[derive(Clone, Copy, Debug)]
+struct Run {
+    belief: Belief,
+    right_echoes_per_s: f64,
+    foreign: f64,
+    own: f64,
+    blind: f64,
+    age_p99_ms: f64,
+}
+
+impl Run {
+    fn of(readings: &Readings, robots: usize) -> Self {
+        let of_one = robots.max(1) as f64;
+        let summary = readings.summary();
+        let Summary { belief, right_echoes_per_s, blind, age_ms, .. } = summary;
+        let share = |of_all: f64| match summary.accepted {
+            0 => 0.0,
+            accepted => of_all * summary.readings as f64 / accepted as f64,
+        };
+        let foreign = share(summary.crosstalk_of_all);
+        Self {
+            belief,
+            right_echoes_per_s: right_echoes_per_s / of_one,
+            foreign,
+            own: (share(summary.wrong_of_all) - foreign).max(0.0),
+            blind: blind as f64 / of_one,
+            age_p99_ms: age_ms.p99,
+        }
+    }
+}
+
+impl RoomFigures {
+    fn of(runs: &[Run]) -> Option<Self> {
+        let spread = |value: fn(&Run) -> f64| Spread::of(runs.iter().map(value));
+        let (right, echoes) = (spread(|run| run.belief.right)?, spread(|run| run.right_echoes_per_s)?);
+        let mean = |value: fn(&Run) -> f64| runs.iter().map(value).sum::<f64>() / runs.len() as f64;
+        let median = |value: fn(&Run) -> f64| quantile(&mut runs.iter().map(value).collect::<Vec<_>>(), 0.5);
+        Some(Self {
+            belief: Belief {
+                right: right.mean,
+                unknown: mean(|run| run.belief.unknown),
+                phantom: mean(|run| run.belief.phantom),
+                too_far: mean(|run| run.belief.too_far),
+                faint: mean(|run| run.belief.faint),
+            },
+            belief_right_95: right.mean_95,
+            belief_right_worst: runs.iter().map(|run| run.belief.right).fold(1.0, f64::min),
+            right_echoes_per_s: echoes.mean,
+            right_echoes_per_s_95: echoes.mean_95,
+            foreign_of_believed: median(|run| run.foreign),
+            foreign_of_believed_worst: runs.iter().map(|run| run.foreign).fold(0.0, f64::max),
+            own_wrong_of_believed: median(|run| run.own),
+            blind: median(|run| run.blind),
+            age_p99_ms: median(|run| run.age_p99_ms),
+        })
+    }
+}
+
+/// Judges ways of firing in rooms, on all cores; the first is the one by one that others are measured by.
+///
+/// `keep_going` is called now and then, by several threads, with the share that is done, 0 to 1; when its answer is
+/// `false` the judgement stops. The result does not depend on the number of threads.
+///
+/// # Errors
+/// [`ExperimentError`] for no rooms or ways, a room in which the robot cannot be, and if it was stopped.
+pub fn judge(
+    ways: &[RoomWay],
+    rooms: &[RoomGroup],
+    asked: &RoomsOptions,
+    keep_going: &(dyn Fn(f64) -> bool + Sync),
+) -> Result<Judgement, ExperimentError> {
+    if ways.is_empty() {
+        return Err(ExperimentError::NoMethods);
+    }
+    if rooms.is_empty() || rooms.iter().any(|group| group.rooms.is_empty()) {
+        return Err(ExperimentError::NoSeeds);
+    }
+    let places = rooms.iter().flat_map(|group| &group.rooms);
+    let jobs: Vec<_> = places.flat_map(|room| (0..ways.len()).map(move |way| (room, way))).collect();
+    let progress = Progress::new(jobs.len() as u64, keep_going);
+    let runs = sweep(&jobs, |&(room, way)| {
+        if !progress.go_on() {
+            return Err(ExperimentError::Stopped);
+        }
+        let RoomWay { method, robot, options, .. } = &ways[way];
+        let world = world_of(room, robot, asked)?;
+        // All for the same time, which a way's period measures.
+        let seconds = if asked.speed_m_s > 0.0 { DRIVING_S } else { STANDING_S };
+        let periods = (1e6 * seconds / f64::from(robot.period.as_micros())).ceil() as u32;
+        let options = Options { periods, ..*options };
+        let run = match simulate_while(&world, *method, &options, |_| progress.go_on()) {
+            Ok(readings) => Ok(Run::of(&readings, world.robots().len())),
+            Err(SimulationError::Stopped) => return Err(ExperimentError::Stopped),
+            Err(error) => Err(error.to_string()),
+        };
+        progress.one_done();
+        Ok(run)
+    });
+    let runs: Vec<Result<Run, String>> = runs.into_iter().collect::<Result<_, ExperimentError>>()?;
+    if progress.stopped() {
+        return Err(ExperimentError::Stopped);
+    }
+    let of_way = |index| runs.iter().skip(index).step_by(ways.len()).cloned().collect::<Result<Vec<Run>, String>>();
+    let base = of_way(0).ok();
+    let sizes: Vec<usize> = rooms.iter().map(|group| group.rooms.len()).collect();
+    let judged = |(index, way): (usize, &RoomWay)| {
+        let of_way = of_way(index);
+        let by_group = |mut of_way: &[Run]| {
+            let mut figures = Vec::with_capacity(rooms.len());
+            for group in rooms {
+                let (runs, rest) = of_way.split_at_checked(group.rooms.len()).unwrap_or((of_way, &[]));
+                figures.extend(RoomFigures::of(runs));
+                of_way = rest;
+            }
+            figures
+        };
+        let blind_90 = of_way.as_ref().map_or([0.0; 2], |runs| blind_90(runs));
+        let times_95 = of_way.as_ref().ok().zip(base.as_ref()).and_then(|(own, base)| times_95(own, base, &sizes));
+        JudgedWay { way: way.clone(), rooms: of_way.map(|of_way| by_group(&of_way)), blind_90, times_95 }
+    };
+    let ways: Vec<_> = ways.iter().enumerate().map(judged).collect();
+    let (recommended, keeps) = recommend(&ways, asked.wrong);
+    Ok(Judgement { ways, recommended, keeps })
+}
+
+/// The numbers of blind sensors between which 90 % of rooms lie. Rooms with several robots have fractions.
+fn blind_90(runs: &[Run]) -> [f64; 2] {
+    let mut blind: Vec<f64> = runs.iter().map(|run| run.blind).collect();
+    [libm::floor(quantile(&mut blind, 0.05)), libm::ceil(quantile(&mut blind, 0.95))]
+}
+
+/// Added to right echoes a second before they are divided, so that ways that hear none are equal.
+const NO_ECHOES: f64 = 0.1;
+
+/// The 95 % interval of the factor of right echoes, from how rooms of a kind differ in it.
+fn times_95(own: &[Run], base: &[Run], sizes: &[usize]) -> Option<[f64; 2]> {
+    let (mut own, mut base) = (own, base);
+    let (mut sum, mut variance, mut measured) = (0.0, 0.0, false);
+    for &size in sizes {
+        let ((own_here, own_rest), (base_here, base_rest)) =
+            (own.split_at_checked(size)?, base.split_at_checked(size)?);
+        (own, base) = (own_rest, base_rest);
+        let rooms = size as f64;
+        let echoes = |runs: &[Run]| runs.iter().map(|run| run.right_echoes_per_s).sum::<f64>() / rooms + NO_ECHOES;
+        let (own_mean, base_mean) = (echoes(own_here), echoes(base_here));
+        sum += libm::log(own_mean / base_mean);
+        if size < 2 {
+            continue;
+        }
+        measured = true;
+        // To first order the logarithm moves by this with each room; its mean is 0.
+        let moved = own_here.iter().zip(base_here).map(|(own, base)| {
+            (own.right_echoes_per_s + NO_ECHOES) / own_mean - (base.right_echoes_per_s + NO_ECHOES) / base_mean
+        });
+        variance += moved.map(|moved| moved * moved).sum::<f64>() / (rooms * (rooms - 1.0));
+    }
+    let kinds = sizes.len() as f64;
+    let reach = 1.96 * libm::sqrt(variance) / kinds;
+    measured.then(|| [-reach, reach].map(|reach| libm::exp(sum / kinds + reach)))
+}
+
+/// A room with the robot in it.
+fn world_of(room: &RoomPlan, robot: &Robot, asked: &RoomsOptions) -> Result<World, ExperimentError> {
+    let Condition { other_gain, flat } = asked.condition;
+    let robot = if other_gain { with_other_gain(robot) } else { robot.clone() };
+    let height = if flat { None } else { Some(Room::DEFAULT) };
+    Ok(room.world(&robot, asked.speed_m_s)?.with_room(height)?.with_physics(Physics::DEFAULT)?)
+}
+
+/// Returns the robot with the other gain: the steps of the chip where it is constant, constant where it grows.
+pub fn with_other_gain(robot: &Robot) -> Robot {
+    let other = match robot.module_of(0).gain {
+        Gain::Constant if robot.module_of(0).frequency_hz > 45_000 => GainProfile::Polaroid6500,
+        Gain::Constant => GainProfile::Stepped,
+        _ => GainProfile::Constant,
+    };
+    robot.clone().with_pattern(Some(other), None)
+}
+
+/// Excess of own wrong echoes over those of one by one that is allowed, as a share.
+const OWN_WRONG_MORE: f64 = 0.01;
+/// Ways whose shares of right belief differ by less are equal, and the one with more right echoes is better.
+const AS_GOOD: f64 = 0.01;
+/// One by one, which takes no library, is as good as a way with less than this many times its right echoes.
+const WORTH_A_LIBRARY: f64 = 1.2;
+
+impl JudgedWay {
+    /// The share of time in which what is believed is right, over all kinds of rooms.
+    pub fn belief_right(&self) -> Option<f64> {
+        let rooms = self.rooms.as_ref().ok()?;
+        Some(rooms.iter().map(|figures| figures.belief.right).sum::<f64>() / rooms.len() as f64)
+    }
+
+    /// Ratio of its right echoes to those of another way, as the geometric mean over all kinds of rooms.
+    pub fn echoes_against(&self, other: &Self) -> Option<f64> {
+        let (Ok(own), Ok(others)) = (&self.rooms, &other.rooms) else { return None };
+        let ratio = |(own, other): (&RoomFigures, &RoomFigures)| {
+            libm::log((own.right_echoes_per_s + NO_ECHOES) / (other.right_echoes_per_s + NO_ECHOES))
+        };
+        let logs = own.iter().zip(others).map(ratio).sum::<f64>();
+        Some(libm::exp(logs / own.len() as f64))
+    }
+
+    /// The index of the first group of rooms in which it is wrong too often or leaves a sensor blind that one by one
+    /// does not.
+    pub fn fails_in(&self, one_by_one: &Self, wrong: f64) -> Option<usize> {
+        let (Ok(own), Ok(base)) = (&self.rooms, &one_by_one.rooms) else { return None };
+        let fails = |own: &RoomFigures, base: &RoomFigures| {
+            own.foreign_of_believed > wrong
+                || own.own_wrong_of_believed > base.own_wrong_of_believed + OWN_WRONG_MORE
+                || own.blind > base.blind
+        };
+        own.iter().zip(base).position(|(own, base)| fails(own, base))
+    }
+}
+
+/// The way, of those that a program has, that is right most of the time and keeps to the shares asked for; of several
+/// as good, the one with most right echoes, but one by one if that has hardly fewer. Where none keeps to them, the one
+/// that is right most of the time.
+fn recommend(ways: &[JudgedWay], wrong: f64) -> (Option<usize>, bool) {
+    let Some(base) = ways.first() else { return (None, false) };
+    let best_of = |among: &dyn Fn(&JudgedWay) -> bool| {
+        let fit: Vec<_> = ways.iter().enumerate().filter(|(_, way)| way.way.has_program() && among(way)).collect();
+        let most = fit.iter().filter_map(|(_, way)| way.belief_right()).reduce(f64::max)?;
+        let as_good = fit.iter().filter(|(_, way)| way.belief_right().is_some_and(|right| right >= most - AS_GOOD));
+        let by_echoes: Vec<_> = as_good.map(|(index, way)| (*index, way.echoes_against(base).unwrap_or(0.0))).collect();
+        let (index, times) = by_echoes.iter().copied().reduce(|one, next| if next.1 > one.1 { next } else { one })?;
+        let one_by_one = by_echoes.iter().any(|&(index, _)| index == 0);
+        Some(if one_by_one && times < WORTH_A_LIBRARY { 0 } else { index })
+    };
+    match best_of(&|way| way.rooms.is_ok() && way.fails_in(base, wrong).is_none()) {
+        Some(index) => (Some(index), true),
+        None => (best_of(&|way| way.rooms.is_ok()), false),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::acoustics::Transducer;
+    use crate::geometry::Pose;
+    use crate::methods::Method;
+
+    const USUAL: RoomFigures = RoomFigures {
+        belief: Belief { right: 0.9, unknown: 0.1, phantom: 0.0, too_far: 0.0, faint: 0.0 },
+        belief_right_95: [0.9; 2],
+        belief_right_worst: 0.9,
+        right_echoes_per_s: 10.0,
+        right_echoes_per_s_95: [10.0; 2],
+        foreign_of_believed: 0.0,
+        foreign_of_believed_worst: 0.0,
+        own_wrong_of_believed: 0.0,
+        blind: 0.0,
+        age_p99_ms: 100.0,
+    };
+
+    const RUN: Run =
+        Run { belief: USUAL.belief, right_echoes_per_s: 1.0, foreign: 0.0, own: 0.0, blind: 0.0, age_p99_ms: 1.0 };
+
+    fn right(right: f64, echoes: f64) -> RoomFigures {
+        RoomFigures { belief: Belief { right, ..USUAL.belief }, right_echoes_per_s: echoes, ..USUAL }
+    }
+
+    fn judged(figures: &[Result<[RoomFigures; 2], &str>]) -> Vec<JudgedWay> {
+        let robot = Robot::ring(Pose::identity(), 4, 1.57, 0.2, Transducer::HC_SR04);
+        let way = RoomWay::all(&robot, None)[0].clone();
+        let judged = figures
+            .iter()
+            .map(|rooms| (way.clone(), rooms.map(Vec::from).map_err(str::to_owned)))
+            .map(|(way, rooms)| JudgedWay { way, rooms, blind_90: [0.0; 2], times_95: None });
+        judged.collect()
+    }
+
+    fn chosen(figures: &[Result<[RoomFigures; 2], &str>]) -> (Option<usize>, bool) {
+        recommend(&judged(figures), 0.03)
+    }
+
+    #[test]
+    fn way_that_is_right_most_is_recommended_and_echoes_part_equals() {
+        let base = Ok([USUAL; 2]);
+        assert_eq!(chosen(&[base, Ok([right(0.95, 9.0); 2]), Ok([right(0.8, 99.0); 2])]), (Some(1), true));
+        assert_eq!(chosen(&[base, Ok([right(0.95, 9.0); 2]), Ok([right(0.945, 20.0); 2])]), (Some(2), true));
+        // Hardly more echoes than one by one are not worth a library.
+        assert_eq!(chosen(&[base, Ok([right(0.905, 11.5); 2])]), (Some(0), true));
+        assert_eq!(chosen(&[base, Ok([right(0.905, 12.5); 2])]), (Some(1), true));
+        // A way without a program is not recommended.
+        let mut ways = judged(&[base, Ok([right(0.99, 99.0); 2])]);
+        ways[1].way.name = "arrays";
+        ways[1].way.method = Method::Arrays;
+        assert_eq!(recommend(&ways, 0.03), (Some(0), true));
+        // What cannot fire is passed over.
+        assert_eq!(chosen(&[base, Err("too fast")]), (Some(0), true));
+        assert_eq!(chosen(&[Err("too fast")]), (None, false));
+    }
+
+    #[test]
+    fn limits_in_one_kind_of_room_are_enough_to_refuse_a_way() {
+        let good = right(0.99, 50.0);
+        let worse = [
+            RoomFigures { foreign_of_believed: 0.04, ..good },
+            RoomFigures { own_wrong_of_believed: 0.02, ..good },
+            RoomFigures { blind: 1.0, ..good },
+        ];
+        for worse in worse {
+            assert_eq!(chosen(&[Ok([USUAL; 2]), Ok([good, worse])]), (Some(0), true), "{worse:?}");
+            // Where all are refused, the one that is right most is named, and said to be refused.
+            let base = RoomFigures { foreign_of_believed: 0.5, ..USUAL };
+            assert_eq!(chosen(&[Ok([base; 2]), Ok([good, worse])]).0, Some(1), "{worse:?}");
+        }
+        let base = RoomFigures { foreign_of_believed: 0.5, ..USUAL };
+        let worse = RoomFigures { foreign_of_believed: 0.04, ..good };
+        assert_eq!(chosen(&[Ok([base; 2]), Ok([good, worse])]), (Some(1), false));
+    }
+
+    #[test]
+    fn blind_sensors_of_the_worst_twentieth_of_rooms_do_not_count() {
+        let run = |blind| Run { blind, ..RUN };
+        let of =
+            |many: usize| blind_90(&(0..40).map(|room| run(if room < many { 3.5 } else { 1.0 })).collect::<Vec<_>>());
+        assert_eq!((of(0), of(2), of(3), of(40)), ([1.0, 1.0], [1.0, 1.0], [1.0, 4.0], [3.0, 4.0]));
+    }
+
+    // The factor is 2 in each room of one kind, and 1 or 4 in those of the other.
+    #[test]
+    fn interval_of_a_factor_comes_from_rooms_that_differ_in_it() {
+        let runs = |echoes: &[f64]| -> Vec<Run> {
+            echoes.iter().map(|echoes| Run { right_echoes_per_s: echoes - NO_ECHOES, ..RUN }).collect()
+        };
+        let base = runs(&[1.0, 5.0, 2.0, 2.0]);
+        let [low, high] = times_95(&runs(&[2.0, 10.0]), &base[..2], &[2]).unwrap();
+        assert!((low - 2.0).abs() < 1e-9 && (high - 2.0).abs() < 1e-9, "{low} to {high}");
+        let [low, high] = times_95(&runs(&[2.0, 10.0, 2.0, 8.0]), &base, &[2, 2]).unwrap();
+        // The second kind's rooms stand 0.6 from their mean: so is its standard error, and that of both is half of it.
+        assert!((high / low - libm::exp(2.0 * 1.96 * 0.3)).abs() < 1e-9, "{low} to {high}");
+        assert!(((high * low).sqrt() - 5.0_f64.sqrt()).abs() < 1e-9, "{low} to {high}");
+        assert_eq!(times_95(&runs(&[2.0]), &base[..1], &[1]), None);
+    }
+
+    // Judgement is the same on any number of threads and stops when asked.
+    #[test]
+    fn judgement_is_equal_on_any_number_of_threads() {
+        let robot = Robot::ring(Pose::identity(), 4, 1.57, 0.2, Transducer::HC_SR04);
+        let ways = RoomWay::all(&robot, None);
+        let rooms = [RoomGroup::of_kind(RoomKind::Office, 3..5, 0.2), RoomGroup::of_kind(RoomKind::Meeting, 3..4, 0.2)];
+        let asked = RoomsOptions::default();
+        let once = judge(&ways, &rooms, &asked, &|_| true).unwrap();
+        assert_eq!(once, judge(&ways, &rooms, &asked, &|_| true).unwrap());
+        assert_eq!(once.ways[0].rooms.as_ref().unwrap().len(), 2);
+        let alone = once.without(|index| index == 1, 0.03).unwrap();
+        assert_eq!(alone.ways[0].rooms.as_ref().unwrap().len(), 1);
+        assert_eq!(judge(&ways, &rooms, &asked, &|_| false), Err(ExperimentError::Stopped));
+        assert_eq!(judge(&[], &rooms, &asked, &|_| true), Err(ExperimentError::NoMethods));
+        assert_eq!(judge(&ways, &[], &asked, &|_| true), Err(ExperimentError::NoSeeds));
+    }
+}

@@ -164,7 +164,7 @@ static bool fire_together(const EerufLimits *limits, uint8_t x, uint8_t y) {
     return READ8(limits[x].group) == READ8(limits[y].group);
 }
 
-/* What a schedule achieves: the largest t_delta and window of its sensors, and by how much crosstalk moves at least: as
+/* Achievements of a schedule: the largest t_delta and window of its sensors, and by how much crosstalk moves at least: as
    much more than that t_delta as the pair with the least to spare has. */
 typedef struct Achieved {
     uint32_t t_delta_us, window_us, separation_us;

@@ -28,7 +28,7 @@
 
 /* The time from one message to the next: at 57,600 baud the longest takes 31 ms. */
 #define EERUF_MAVLINK_PACE_US 20000u
-/* What was not confirmed for as long is not known. */
+/* A state that was not confirmed for as long is not known. */
 #define EERUF_MAVLINK_OLD_US 1000000u
 #define EERUF_MAVLINK_HEARTBEAT 50 /* the byte by which sender and receiver know that they mean the same fields */
 
@@ -104,7 +104,7 @@ static inline void eeruf_mavlink_end(EerufMavlink *link, uint8_t extra) {
     eeruf_mavlink_put(link, eeruf_mavlink_crc(crc, extra), 2);
 }
 
-/* What a sensor sees, in centimetres: more than the maximum for nothing in range, 65535 for unknown. */
+/* The view of a sensor, in centimetres: more than the maximum for nothing in range, 65535 for unknown. */
 static inline uint16_t eeruf_mavlink_cm(const EerufMavlink *link, const EerufWatch *watch, uint8_t sensor,
                                         uint8_t *unanswered) {
     EerufState state = {0, 0, EERUF_STATE_UNKNOWN, 0, 0};

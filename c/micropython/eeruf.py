@@ -364,7 +364,7 @@ class FlowRing:
         return self._emit_at if self._pends() and not self._reached(self._emit_at, self._due) else self._due
 
     def state(self, x, now_us):
-        """What is before a sensor, and since when: (kind, t_echo_us, age_us, why, explained_by)."""
+        """The state before a sensor, and its age: (kind, t_echo_us, age_us, why, explained_by)."""
         sensor = self._sensors[x]
         age_us = min((now_us - sensor.seen_at) & self._mask, self._half)
         if sensor.shows in _WHYS:

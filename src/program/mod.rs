@@ -64,7 +64,7 @@ pub(crate) struct Wanted<'a> {
 
 const C_LIBRARY: [(&str, &str); 2] =
     [("eeruf.c", include_str!("../../c/eeruf.c")), ("eeruf.h", include_str!("../../c/eeruf.h"))];
-/// What speaks to an autopilot, and the autopilot's parameters.
+/// The header that speaks to an autopilot, and the autopilot's parameters.
 const MAVLINK: (&str, &str) = ("eeruf_mavlink.h", include_str!("../../c/eeruf_mavlink.h"));
 const ARDUPILOT: (&str, &str) = ("ardupilot.param", include_str!("templates/ardupilot.param"));
 const ARDUINO_LIBRARY: [(&str, &str); 5] = [

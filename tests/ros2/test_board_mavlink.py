@@ -1,4 +1,4 @@
-"""What `eeruf design --program c --mavlink` writes to an autopilot's line, by pymavlink, and what autopilots make of it: eight
+"""Bytes that `eeruf design --program c --mavlink` writes to an autopilot's line, by pymavlink, and what autopilots make of it: eight
 modules all around, each before a wall of its own."""
 
 import os

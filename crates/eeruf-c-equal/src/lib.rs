@@ -65,7 +65,7 @@ pub enum Between {
     Look,
 }
 
-/// What a schedule is to be verified for, as the fields of an EerufSchedule.
+/// The requirements that a schedule is to be verified for, as the fields of an EerufSchedule.
 #[derive(Clone, Copy, Debug)]
 #[expect(missing_docs, reason = "named as the fields of EerufSchedule")]
 pub struct Claim {

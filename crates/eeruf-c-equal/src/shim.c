@@ -77,7 +77,7 @@ static EerufLimits *limits_of(uint8_t sensors, const uint32_t *own, uint8_t numb
     return limits;
 }
 
-/* What a schedule was verified for, if eeruf_schedule_check says so; else it was not. `numbers`: t_delta, interval,
+/* Notes the requirements of a schedule, if eeruf_schedule_check says so; else it was not. `numbers`: t_delta, interval,
    window, separation, path change, audible; layout, neighbours, stale echo. */
 int shim_verified(Handle *handle, unsigned number, const uint32_t *numbers, const uint32_t *own) {
     EerufSchedule *schedule = handle->schedules[number];

@@ -93,7 +93,7 @@ impl Line {
                     self.flaw = Health::Chatters;
                     return Shown::Disturbance;
                 }
-                // The module's own time-out only if it is surely as long. With an Option the image for AVR hears nothing.
+                // The module's own time-out only if it is surely as long. With an Option an AVR hears nothing.
                 let is_echo = least < settings.longest;
                 let known = if is_echo { width.as_micros().min(ENDED.into()) as u16 } else { ENDED };
                 self.pulse = Pulse::Over(rose, known);

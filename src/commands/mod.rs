@@ -238,7 +238,7 @@ mod tests {
     use super::{Cli, Parser as _, program};
 
     /// Names of values that are a unit or a kind; a number without a unit is named by its help.
-    const KINDS: [&str; 30] = [
+    const KINDS: [&str; 31] = [
         "RING.toml|SCENE.toml",
         "US",
         "S",
@@ -249,6 +249,7 @@ mod tests {
         "SEED",
         "I/N",
         "DIR",
+        "DIR|FILE",
         "FILE",
         "FILE.mcap",
         "LOG",

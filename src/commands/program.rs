@@ -27,7 +27,7 @@ pub(crate) struct ProgramArgs {
     board: Option<Board>,
     /// Let it send MAVLink from the board's own serial line to an autopilot instead of printing, with ArduPilot's
     /// parameters beside it
-    #[arg(long, requires = "program")]
+    #[arg(long, hide_short_help = true, requires = "program")]
     mavlink: bool,
     /// The program's folder; by default one with the ring file's name
     #[arg(long, value_name = "DIR", requires = "program")]

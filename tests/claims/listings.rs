@@ -91,6 +91,10 @@ fn folder_of_a_reader(document: &str) -> tempfile::TempDir {
     for name in ["ring.toml", "RING.toml", "robot.toml"].into_iter().filter(|name| *name != written) {
         fs::write(path(name), &ring).unwrap();
     }
+    // An autopilot must know where each sensor looks.
+    if document.ends_with("autopilots.md") {
+        fs::write(path("ring.toml"), ring + "spacing_deg = 45.0\nradius_m = 0.2\n").unwrap();
+    }
     fs::copy(root().join("tests/data/field-cases/multiarray.bag"), path("drive.bag")).unwrap();
     let rows = |row: &dyn Fn(u32) -> String| (1..20).map(row).collect::<String>();
     fs::write(path("serial.csv"), rows(&|k| format!("{},40,x,{}\n", 60 * k, if k % 4 == 0 { 999 } else { 80 })))
@@ -183,6 +187,10 @@ fn check(listing: &Listing, folder: &Path) -> Vec<String> {
         }
         "rust" => run_crate(text, folder),
         "cpp" => compile_sketch(text, folder),
+        "toml" if text.contains("[[robot]]") => {
+            write("room.toml", text);
+            eeruf("study room.toml --method sequential --periods 40 --log room.csv")
+        }
         "toml" if text.contains("[[fault]]") => {
             write("fault.toml", &(read("scenes/alcove.toml") + "\n" + text));
             eeruf("lab paths fault.toml")

@@ -1,4 +1,4 @@
-"""What calls answer: frozen classes, made by the compiled part."""
+"""Answers of calls: frozen classes, made by the compiled part."""
 
 from __future__ import annotations
 
@@ -109,7 +109,7 @@ class Found(Result):
     seconds: float
     """Duration of the search, in seconds."""
     reason: str | None = None
-    """Why the period is not shorter, in words; None from ``WaitSearch.best``."""
+    """The reason why the period is not shorter, in words; None from ``WaitSearch.best``."""
     certificate: str | None = field(default=None, repr=False)
     """A proof for :func:`~eeruf.check_certificate`; None unless ``design`` was asked for one."""
     from_atlas: bool = field(default=False, repr=False)
@@ -130,7 +130,7 @@ class Blind(Result):
     sensor: int
     """The sensor, from 0."""
     firings: int
-    """For how many firings with an echo nothing was accepted."""
+    """Number of firings with an echo of which nothing was accepted."""
 
 
 @dataclass(frozen=True)
@@ -153,7 +153,7 @@ class State(Result):
     """Microseconds since that was last confirmed, or for which nothing has been known or answered; at most 2^31 (36 minutes),
     which stands for all longer times."""
     why: _Doubt | None = None
-    """Why nothing is known: ``"no_firing"``, ``"unsure"`` (one echo, or one silence), ``"rejected"``, ``"no_witness"``
+    """The reason why nothing is known: ``"no_firing"``, ``"unsure"`` (one echo, or one silence), ``"rejected"``, ``"no_witness"``
     (silence that nothing confirms) or ``"ambiguous"``; None for all else."""
     explained_by: int | Literal["history"] | None = None
     """The sensor whose sound explains an ambiguous echo, or ``"history"``; None for all else."""

@@ -198,7 +198,7 @@ pub(crate) enum LabVerb {
     Paths(paths::Args),
     #[command(after_help = help!("lab scene map.yaml > scene.toml", "0 printed; 2 bad input"))]
     Scene(scene::Args),
-    #[command(after_help = help!("lab reality log.csv scenes/alcove-hc-sr04.toml --method flow", "0 compared; 2 bad input"))]
+    #[command(after_help = help!("lab reality log.csv room.toml --method flow", "0 compared; 2 bad input"))]
     Reality(reality::Args),
 }
 
@@ -238,7 +238,7 @@ mod tests {
     use super::{Cli, Parser as _, program};
 
     /// Names of values that are a unit or a kind; a number without a unit is named by its help.
-    const KINDS: [&str; 31] = [
+    const KINDS: [&str; 32] = [
         "RING.toml|SCENE.toml",
         "US",
         "S",
@@ -258,6 +258,7 @@ mod tests {
         "SCENE.toml",
         "SCENE.toml|MAP.yaml|DIR",
         "SCHEDULE.toml",
+        "NAME",
         "NAME,..",
         "NAMES",
         "COLUMN",

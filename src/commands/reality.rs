@@ -55,7 +55,7 @@ struct Figures {
 }
 
 impl Figures {
-    /// Of each firing's distance, if it had an echo.
+    /// Figures of each firing's distance, if it had an echo.
     fn of(firings: impl Iterator<Item = Option<f64>>) -> Self {
         let all: Vec<_> = firings.collect();
         let mut mm: Vec<f64> = all.iter().copied().flatten().collect();
@@ -104,7 +104,8 @@ impl Reality {
         };
         let (all, like) = (self.sensors.len(), self.sensors.iter().filter(|sensor| sensor.is_like).count());
         format!(
-            "{like} of {all} sensors are as simulated ({}, {:.0} s): medians within 5 cm, shares within 10 points\n{}\n",
+            "{like} of {all} sensors are as simulated ({}, {:.0} s): medians within 5 cm, shares within 10 \
+             points\n{}\n",
             self.method,
             self.seconds,
             markdown(&header, self.sensors.iter().map(row))

@@ -1,5 +1,5 @@
-//! Listings of README and the guides: each is compiled or run in the folder in which a reader would have it, or is a part
-//! of a file that is.
+//! Listings of README and the guides: each is compiled or run in the folder in which a reader would have it, or is a
+//! part of a file that is.
 
 use std::fs;
 use std::os::unix::fs::{PermissionsExt as _, symlink};

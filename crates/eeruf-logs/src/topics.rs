@@ -8,7 +8,7 @@ use crate::options::RangeUnit;
 use crate::reading::{Reading, Sensor};
 use crate::sink::{Guess, Sink, Skipped, finite};
 
-/// What is known of the topics of a log.
+/// Knowledge of the topics of a log.
 #[derive(Default)]
 pub(crate) struct Topics {
     /// Number of messages that were found, of whatever type and whether or not they could be read.

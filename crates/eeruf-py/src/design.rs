@@ -128,7 +128,7 @@ pub(crate) fn design<'py>(
     found.into_python(py)
 }
 
-/// What a search is asked, by the arguments that all of them have.
+/// Needs by the arguments that all searches have.
 pub(crate) fn asked<'py>(
     py: Python<'py>,
     call: &str,

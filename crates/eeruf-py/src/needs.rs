@@ -15,7 +15,7 @@ use crate::arguments::{self, shown, wrong};
 use crate::errors::{ArgumentError, RingError, warn_of};
 use crate::faults::table_of;
 
-/// What a ring needs, in one value: made from the keys of a ring file, such as ``module`` and ``speed_m_s``, or read from
+/// Needs of a ring in one value: made from the keys of a ring file, such as ``module`` and ``speed_m_s``, or read from
 /// one. :func:`design`, :meth:`Schedule.verify`, ``Ring`` and ``Ring.flow`` take it in place of the times that follow.
 ///
 /// Args:

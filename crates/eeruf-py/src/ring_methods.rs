@@ -115,8 +115,8 @@ impl Ring {
     ///         while the robot moves and is alone, and else two in a row that agree, ``"two_in_a_row"`` or
     ///         ``"every_echo"``.
     ///     now_us: when the first cycle begins.
-    ///     window_us: ``T_wind``: how long a sensor listens after it has fired, 1 or more; one for all, or each. Needed but
-    ///         with a :class:`Needs`.
+    ///     window_us: ``T_wind``: how long a sensor listens after it has fired, 1 or more; one for all, or each. Needed
+    ///         but with a :class:`Needs`.
     ///     blanking_us: edges sooner than this after firing are no echoes.
     ///     reach_us: R: after how long no sound is heard any more, the tail of an echo included; by default two ninths
     ///         more than the window. The most quiet that a sensor gets.

@@ -58,8 +58,8 @@ use crate::{
 ///         its modules say where ``module`` is given, or else no longer than sensors listen.
 ///     path_change_us: P: the largest change of a foreign sound's path from one reading to the next, where
 ///         a table fires the ring, at most 65,534 us; None for ``t_delta_us``.
-///     ring: a :class:`~eeruf.Needs`, or the path of a ring file, that gives modules, windows, ``T_delta``, sensors that fire
-///         together, neighbours, ``path_change_us`` and ``audible_us``, unless these are given here.
+///     ring: a :class:`~eeruf.Needs`, or the path of a ring file, that gives modules, windows, ``T_delta``, sensors
+///         that fire together, neighbours, ``path_change_us`` and ``audible_us``, unless these are given here.
 ///     firing: a dict with the keys of ``[firing]`` in scene files, such as ``{"turn_us": 33_000}``, for the methods
 ///         that fire as sketches and modules do.
 ///     start_us: when the ring begins to fire, by its own clock.

@@ -7,8 +7,8 @@
 //!   for a whole ring and says who hears whom.
 //! - [`reception`] solves for the moment at which sound meets a moving receiver; [`Scene::contact`] for what a robot
 //!   touches.
-//! - A [`Simulation`] goes on step by step under the caller's own controller, and with the caller's own [`FiringMethod`] and
-//!   [`Filter`] where they are given ([`Own`]).
+//! - A [`Simulation`] goes on step by step under the caller's own controller, and with the caller's own
+//!   [`FiringMethod`] and [`Filter`] where they are given ([`Own`]).
 //! - A [`World`] puts robots with rings, clocks and motions into a scene, from a TOML file or from code; [`simulate()`]
 //!   runs the ring of `eeruf-core` through simulated time under a [`Method`]. Every one of the [`Readings`] knows what
 //!   caused it; [`Summary`] counts the errors and [`Attribution`] says who was fooled by whom.

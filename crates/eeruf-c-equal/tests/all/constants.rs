@@ -16,10 +16,10 @@ fn times_of_an_hc_sr04_are_alike_in_all_languages() {
     let times = format!("{edges}, {longest}, {longest_hold}, {min_retrigger}, {missing_after}, {trigger}");
     let macro_line = format!("#define EERUF_HC_SR04 {{EERUF_VERSION, {times}}}");
     assert!(HEADER.lines().any(|line| line.starts_with(&macro_line)), "{macro_line}");
+    let first = format!("{deaf}, {shortest}, {longest}");
     for line in [
-        format!("DEAF_US, SHORTEST_US, LONGEST_US = {deaf}, {shortest}, {longest}"),
-        format!("LONGEST_HOLD_US = {longest_hold} "),
-        format!("MIN_RETRIGGER_US, TRIGGER_US = {min_retrigger}, {trigger}"),
+        format!("DEAF_US, SHORTEST_US, LONGEST_US, MIN_RETRIGGER_US, TRIGGER_US = {first}, {min_retrigger}, {trigger}"),
+        format!("LATEST_RISE_US, LONGEST_HOLD_US, RECOVERY_US = {latest_rise}, {longest_hold}, "),
     ] {
         assert!(PYTHON.lines().any(|text| text.trim_start().starts_with(&line)), "{line}");
     }

@@ -414,6 +414,7 @@ def disturb(c: Chance, live: Any, now: int) -> None:
         tried(live.upcoming)
         tried(live.measured, c.mostly(1), c.random.choice([None, c.mostly(9_000)]))
         tried(live.answered, c.mostly(1), c.mostly(False))
+        tried(live.echo_between, c.mostly(1), c.mostly(now), c.mostly(now + 90))
         tried(c.random.choice([live.state, live.forget]), c.mostly(1))
 
 

@@ -20,7 +20,7 @@ def wheel() -> Path:
 
 def test_the_wheel_is_small_and_for_python_3_9_on() -> None:
     # By the compilers that CI installs; by others a twentieth more.
-    most = 6_450_000 * (1 if "EERUF_EXACT_SIZES" in os.environ else 1.05)
+    most = 6_650_000 * (1 if "EERUF_EXACT_SIZES" in os.environ else 1.05)
     assert wheel().stat().st_size < most, f"{wheel().stat().st_size} bytes; expected at most {most}"
     assert "-cp39-abi3-" in wheel().name
     assert metadata.metadata("eeruf")["Requires-Python"] == ">=3.9"

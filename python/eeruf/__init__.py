@@ -160,9 +160,9 @@ def show_versions() -> None:
 if not TYPE_CHECKING:
     # On first use: a program without them need not wait for them, or for what they import.
     _MODULES = ("experiments", "logs", "plot")
-    _FROM = dict.fromkeys(("check", "diagnose", "read_firings", "read_log", "replay", "survey"), "eeruf.logs") | dict.fromkeys(
-        ("Blind", "Found", "Report", "State", "Violation"), "eeruf._records"
-    )
+    _FROM = dict.fromkeys(
+        ("check", "diagnose", "read_firings", "read_log", "replay", "survey"), "eeruf.logs"
+    ) | dict.fromkeys(("Blind", "Found", "Report", "State", "Violation"), "eeruf._records")
 
     # What there was, and what does it now.
     _GONE = dict.fromkeys(

@@ -18,9 +18,6 @@ from eeruf.logs import Firings
 _Int = SupportsIndex
 # One for all sensors, or one for each.
 _Each = _Int | Iterable[_Int]
-# Needs, or the path of a ring file; and what searches take, which may also be a number of sensors.
-_Needs = Needs | str | PathLike[str]
-_Ring = _Int | _Needs
 _Floats = NDArray[np.float64]
 _Ints = NDArray[np.int64]
 _Codes = NDArray[np.int8]
@@ -200,6 +197,10 @@ class Needs:
     def __eq__(self, value: object, /) -> bool: ...
     def __ne__(self, value: object, /) -> bool: ...
     def __hash__(self, /) -> int: ...
+
+# Needs, or the path of a ring file; and what searches take, which may also be a number of sensors.
+_Needs = Needs | str | PathLike[str]
+_Ring = _Int | _Needs
 
 def design(
     sensors: _Ring,

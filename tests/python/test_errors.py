@@ -70,13 +70,21 @@ BAD: list[tuple[Callable[[], Any], type[Exception], str]] = [
     # The same for what is not a number at all, and for everything that came later.
     (lambda: ANY.design(b"4", 1, 1, 1), eeruf.ArgumentError, "sensors = b'4'; expected a whole number from 1 to 64"),
     (lambda: eeruf.design("none.toml"), eeruf.RingError, "none.toml: No such file .*; expected a file that exists"),
-    (lambda: eeruf.design(4), eeruf.ArgumentError, "t_delta_us = None; expected t_delta_us, min_interval_us and window"),
+    (
+        lambda: eeruf.design(4),
+        eeruf.ArgumentError,
+        "t_delta_us = None; expected t_delta_us, min_interval_us and window",
+    ),
     (lambda: eeruf.design(4, 1, 1), eeruf.ArgumentError, "window_us = None; expected t_delta_us, min_interval_us and"),
     (lambda: eeruf.design(NEEDS, 500), eeruf.ArgumentError, "t_delta_us = 500; expected none beside a Needs"),
     (lambda: tables.TABLE_I_D.verify(NEEDS), eeruf.ArgumentError, "expected needs of 12 sensors, as the schedule has"),
     (lambda: eeruf.Ring.flow(NEEDS, window_us=9_000), eeruf.ArgumentError, "window_us = 9000; expected none beside a"),
-    (lambda: eeruf.Ring.flow(NEEDS, reach_us=9_000), eeruf.ArgumentError, "reach_us = 9000; expected none beside a Needs"),
-    (lambda: eeruf.Needs(sensors=8), eeruf.ArgumentError, "module: missing; expected `module = \"hc-sr04\"`"),
+    (
+        lambda: eeruf.Ring.flow(NEEDS, reach_us=9_000),
+        eeruf.ArgumentError,
+        "reach_us = 9000; expected none beside a Needs",
+    ),
+    (lambda: eeruf.Needs(sensors=8), eeruf.ArgumentError, 'module: missing; expected `module = "hc-sr04"`'),
     (lambda: eeruf.Needs(sensor=8), eeruf.ArgumentError, "sensor"),
     (lambda: eeruf.Needs.from_toml("sensors = 8\nmodule = 4"), eeruf.RingError, "line 2"),
     (lambda: ANY.design(4.0, 1, 1, 1), eeruf.ArgumentError, "sensors = 4.0"),
@@ -278,7 +286,9 @@ def test_the_core_never_panics_whatever_it_is_given(arguments: list[Any], layout
         lambda: ANY.Schedule.from_firing(*arguments[:3]),
         lambda: ANY.Schedule.from_toml(arguments[0]),
         lambda: ANY.Schedule.from_json(arguments[0]),
-        lambda: ANY.tables.TABLE_I_D.verify(*arguments[:2], layout=layout, window_us=arguments[2], together=arguments[3]),
+        lambda: ANY.tables.TABLE_I_D.verify(
+            *arguments[:2], layout=layout, window_us=arguments[2], together=arguments[3]
+        ),
         lambda: ANY.tables.TABLE_I_D.to_rust(*arguments[:2], neighbours=arguments[2], layout=layout),
         lambda: ANY.tables.TABLE_I_D.to_c(*arguments[:2], neighbours=arguments[2], layout=layout),
         lambda: tables.TABLE_I_D.scaled(*arguments[:2]),

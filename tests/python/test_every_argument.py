@@ -100,11 +100,11 @@ RIGHT: dict[str, Any] = {
 }
 # The same where a name has two meanings, and optional ones without which the others say nothing.
 RIGHT_OF: dict[str, dict[str, Any]] = {
-    **dict.fromkeys(
-        ("eeruf.curve", "eeruf.design", "eeruf.fit"),
-        {"sensors": 4, "t_delta_us": 999, "min_interval_us": 15_000, "window_us": 36_000},
-    ),
-    **dict.fromkeys(("eeruf.Ring", "eeruf.Ring.flow"), {"window_us": 36_000}),
+    **{
+        key: {"sensors": 4, "t_delta_us": 999, "min_interval_us": 15000, "window_us": 36000}
+        for key in ("eeruf.curve", "eeruf.design", "eeruf.fit")
+    },
+    **{key: {"window_us": 36000} for key in ("eeruf.Ring", "eeruf.Ring.flow")},
     "eeruf.sim.Readings.from_arrays": {"sensor": [0], "fired_s": [0.0], "t_echo_us": [5_000.0]},
     "eeruf.sim.Robot": {"sensors": 8, "spacing_rad": 0.26, "radius_m": 0.3},
     "eeruf.experiments.Scenes": {"kind": "alcove"},

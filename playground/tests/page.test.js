@@ -14,7 +14,7 @@ import { BUILT, LECTURE, SINGLE, launch, open, ready, serve } from "./browser.js
 
 const LONG = Boolean(process.env.PAGE_LONG);
 /** A page and all that it loads, gzipped: by the compilers that CI installs; by others a twentieth more. */
-const MOST_BYTES = 930_000 * (process.env.EERUF_EXACT_SIZES ? 1 : 1.05);
+const MOST_BYTES = 950_000 * (process.env.EERUF_EXACT_SIZES ? 1 : 1.05);
 
 const browser = await launch();
 const server = await serve();

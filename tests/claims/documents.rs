@@ -73,7 +73,7 @@ fn table_of_readme_is_in_the_tables_that_are_kept() {
     }
 }
 
-// What the first picture shows is what the first command simulates, and its words are what it counts.
+// The first picture shows what the first command simulates, in words that say what it counts.
 #[test]
 fn first_picture_and_command_of_readme_are_of_one_scene() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));

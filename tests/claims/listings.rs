@@ -101,7 +101,7 @@ fn folder_of_a_reader(document: &str) -> tempfile::TempDir {
         .unwrap();
     let table = "stamp,left,right\n".to_owned() + &rows(&|k| format!("{},{},80\n", 60 * k, 40 + k % 2));
     fs::write(path("log.csv"), table).unwrap();
-    // What an MQTT broker's client prints.
+    // Lines as an MQTT broker's client prints them.
     fs::write(path("bin/mosquitto_sub"), "#!/bin/sh\nfor k in 1 2 3 4 5 6 7 8; do echo car/left 0.4$k; done\n")
         .unwrap();
     fs::set_permissions(path("bin/mosquitto_sub"), fs::Permissions::from_mode(0o755)).unwrap();

@@ -64,7 +64,7 @@ fn mistakes_are_answered_in_one_look() {
     assert!(wrong.is_empty(), "{wrong}");
 }
 
-// What is right is not refused, and what warns is a warning.
+// Right files are not refused, and doubtful ones are warned of.
 #[test]
 fn no_file_that_is_shipped_is_refused() {
     let files = |folder: &str| {

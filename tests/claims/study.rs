@@ -183,7 +183,7 @@ fn name_of_a_picture_is_a_folder_without_an_ending() {
         assert_eq!((outcome.code, outcome.err.as_str()), (Some(0), ""), "{name}");
         assert!(std::fs::read_to_string(at(drawn)).unwrap().starts_with("<svg"), "{drawn}");
     }
-    // What cannot be drawn is said before the work.
+    // Pictures that cannot be drawn are refused before the work.
     let began = std::time::Instant::now();
     let refused = eeruf(&["study", "scenes/wall.toml", "--periods", "10000000", "--svg", &at("d.svg/x")]);
     assert!(

@@ -62,6 +62,19 @@ impl Report {
 /// Damage beyond this is counted, not listed.
 const LISTED: usize = 100;
 
+/// Knowledge of the topics of a log.
+#[cfg(feature = "files")]
+#[derive(Default)]
+pub(crate) struct Topics {
+    /// Number of messages that were found, of whatever type and whether or not they could be read.
+    pub(crate) found: u64,
+    pub(crate) buffer: Vec<Reading>,
+    /// Topics with readings.
+    pub(crate) names: std::collections::HashSet<String>,
+    /// Topics of which one warning is enough.
+    pub(crate) warned: std::collections::HashSet<String>,
+}
+
 /// Takes messages, and hands on readings.
 pub(crate) struct Sink<'a> {
     pub(crate) report: Report,
@@ -69,7 +82,7 @@ pub(crate) struct Sink<'a> {
     more_damage: u64,
     pub(crate) options: &'a Options,
     #[cfg(feature = "files")]
-    pub(crate) of_topics: crate::topics::Topics,
+    pub(crate) of_topics: Topics,
     pub(crate) stamps: Stamps,
     /// All readings of a row, or of a message, have its time.
     pub(crate) one_time_a_row: bool,
@@ -85,7 +98,7 @@ impl<'a> Sink<'a> {
             more_damage: 0,
             options,
             #[cfg(feature = "files")]
-            of_topics: crate::topics::Topics::default(),
+            of_topics: Topics::default(),
             stamps: Stamps::default(),
             one_time_a_row: false,
             has_own_times: false,

@@ -1,24 +1,11 @@
 //! Messages of topics: finds out which sensor each reading is of.
 
-use std::collections::HashSet;
 use std::path::Path;
 
 use crate::message::{Encoding, Kind, MAX_BEAMS, Undecoded};
 use crate::options::RangeUnit;
-use crate::reading::{Reading, Sensor};
+use crate::reading::Sensor;
 use crate::sink::{Guess, Sink, Skipped, finite};
-
-/// Knowledge of the topics of a log.
-#[derive(Default)]
-pub(crate) struct Topics {
-    /// Number of messages that were found, of whatever type and whether or not they could be read.
-    pub(crate) found: u64,
-    buffer: Vec<Reading>,
-    /// Topics with readings.
-    names: HashSet<String>,
-    /// Topics of which one warning is enough.
-    warned: HashSet<String>,
-}
 
 /// One topic of one file.
 pub(crate) struct Topic {

@@ -1,6 +1,5 @@
 //! `faults` of a scene: dicts of the words of scene files.
 
-use eeruf_files::emit::Emit as _;
 use eeruf_sim::Fault;
 use pyo3::{
     prelude::*,
@@ -10,7 +9,6 @@ use toml::{Table, Value};
 
 use crate::arguments::{items, shown, text, wrong};
 use crate::errors::ArgumentError;
-use crate::schedule::Schedule;
 
 /// A value as TOML has it.
 fn value_of(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Value> {
@@ -18,8 +16,8 @@ fn value_of(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Value> {
     if let Ok(flag) = value.cast::<PyBool>() {
         return Ok(Value::from(flag.is_true()));
     }
-    if let Ok(schedule) = value.cast::<Schedule>() {
-        let text = schedule.get().0.to_toml();
+    // A schedule, and whatever else writes itself so.
+    if let Ok(text) = value.call_method0("to_toml").and_then(|text| text.extract::<String>()) {
         return text.parse::<Table>().map(Value::Table).map_err(|error| ArgumentError::new_err(error.to_string()));
     }
     if value.is_instance_of::<PyString>() {

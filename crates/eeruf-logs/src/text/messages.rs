@@ -147,7 +147,7 @@ fn written(values: &[(String, Json)]) -> String {
 
 /// A value: a list in brackets, a number, or text without quotes and without the dot before `inf` and `nan`.
 fn scalar(text: &str) -> Json {
-    // What a number stands for, as a comment.
+    // The meaning of a number, as a comment.
     let text = text.split_once(" # ").map_or(text, |(number, _)| number.trim_end());
     let is_parsed = text.starts_with('[') || value::number(text, false).is_some();
     let parsed = if is_parsed { serde_json::from_str(text).ok() } else { None };

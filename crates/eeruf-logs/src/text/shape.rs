@@ -144,8 +144,8 @@ pub(crate) fn separated(line: &str, separator: Separator) -> Option<Vec<String>>
 /// The pairs of a line: each value behind a colon or an equals sign, with the words before it as its name; nothing if
 /// it holds anything else.
 ///
-/// What stands before a name and is none of it does not count: a program, a decision, the number of a loop, the name of
-/// a message around it.
+/// Words before a name that are none of it do not count: a program, a decision, the number of a loop, the name of a
+/// message around it.
 pub(crate) fn keyed(line: &str) -> Option<Vec<(String, String)>> {
     const BETWEEN: [char; 6] = [',', ';', '|', '\t', ' ', '&'];
     // A colon of full width, as Chinese and Japanese have it; the sign between a value and its unit of a plotter.
@@ -280,7 +280,7 @@ fn name_in(before: &str, is_equal: bool) -> &str {
     let mut name = before;
     for open in ['(', '[', '{'] {
         let close = if open == '(' { ')' } else { (open as u8 + 2) as char };
-        // What is open still is around the name.
+        // Brackets that are open still are around the name.
         if let Some(at) = name.rfind(open).filter(|&at| !name[at..].contains(close)) {
             name = &name[at + 1..];
         }

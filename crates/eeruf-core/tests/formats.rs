@@ -208,7 +208,7 @@ mod everything_public_has_a_format {
         formats::<(PeriodStats, Reading, RingConfig, RingConfig<8>, RingError, RingEvent)>();
         formats::<(ScheduledRing<'_, 12>, ScheduledRing<'_, 12, 8>, SensorWatch<12>, SensorState)>();
         formats::<(Phase, Schedule<12>, ScheduleError, VerifiedFor, VerifiedSchedule<12>)>();
-        formats::<(BrokenPromise, ImmediateRefiring<'_, 12>, Limits<'_>, ScheduledFiring<'_, 12>, Upcoming)>();
+        formats::<(BrokenPromise, ImmediateRefiring<'_, 12>, PlanLimits<'_>, ScheduledFiring<'_, 12>, Upcoming)>();
         formats::<(Verification<'_, 12>, Violation, ViolationKind)>();
         formats::<(SensorLimits, Uneven<'_>, EachSensor<12>)>();
         formats::<(TurnSettings, BeliefSettings, FiringContext, Survey)>();

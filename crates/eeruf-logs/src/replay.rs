@@ -4,7 +4,7 @@ use std::collections::VecDeque;
 
 use eeruf_core::flow::{Belief, BeliefSettings};
 use eeruf_core::judge::{Explanation, FiringContext, Judge as _};
-use eeruf_core::plan::{Limits, OwnLimits, Plan};
+use eeruf_core::plan::{OwnLimits, Plan, PlanLimits};
 use eeruf_core::{
     EachSensor, Instant, MAX_SENSORS, Micros, Phase, Reading, ReadingKind, Ring, RingConfig, RingError, RingEvent,
     SensorLimits, Silence,
@@ -240,8 +240,8 @@ impl Plan for Recorded {
         FiringContext::new(Phase::A)
     }
 
-    fn limits(&self) -> Limits<'_> {
-        Limits { longest_window: self.window, verified_for: None, audible: Some(self.audible) }
+    fn limits(&self) -> PlanLimits<'_> {
+        PlanLimits { longest_window: self.window, verified_for: None, audible: Some(self.audible) }
     }
 
     fn hears(&self, receiver: u8, emitter: u8) -> bool {

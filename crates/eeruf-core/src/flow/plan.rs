@@ -3,7 +3,7 @@
 use super::settings::{LONGEST_REST, TurnSettings};
 use crate::judging::{FiringContext, Heard, Judge, Pace, Quiet};
 use crate::own_limits::{OwnLimits, SensorLimits};
-use crate::plan::{Limits, Plan};
+use crate::plan::{Plan, PlanLimits};
 use crate::reading::Verdict;
 use crate::ring_error::{PLAUSIBLE, RingError, within};
 use crate::schedule::{MAX_SENSORS, Phase};
@@ -566,8 +566,8 @@ impl<const K: usize, U: OwnLimits> Plan for InTurn<K, U> {
         FiringContext::new(Phase::A)
     }
 
-    fn limits(&self) -> Limits<'_> {
-        Limits { longest_window: self.min_refire(), verified_for: None, audible: Some(self.most) }
+    fn limits(&self) -> PlanLimits<'_> {
+        PlanLimits { longest_window: self.min_refire(), verified_for: None, audible: Some(self.most) }
     }
 
     fn hears(&self, receiver: u8, emitter: u8) -> bool {

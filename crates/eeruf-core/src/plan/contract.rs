@@ -23,7 +23,7 @@ pub struct Upcoming {
 /// Limits that a plan sets to the ring it fires.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
-pub struct Limits<'s> {
+pub struct PlanLimits<'s> {
     /// Longest listening time of a sensor: it does not fire again within this time of firing, unless it has ended.
     pub longest_window: Micros,
     /// Requirements that the schedule was verified for, if it was: the ring may ask for less, and not for more.
@@ -99,9 +99,9 @@ pub trait Plan {
     /// Properties of a sensor's last firing, `periods_ago` periods before the present one.
     fn last_firing(&self, sensor: u8, periods_ago: u8) -> FiringContext;
     /// Limits in the present period.
-    fn limits(&self) -> Limits<'_>;
+    fn limits(&self) -> PlanLimits<'_>;
     /// Limits from the next period on, if the schedule changes with it.
-    fn next_limits(&self) -> Option<Limits<'_>> {
+    fn next_limits(&self) -> Option<PlanLimits<'_>> {
         None
     }
     /// Returns true if `receiver` can hear `emitter`, which is so for all sensors but those that were declared not to

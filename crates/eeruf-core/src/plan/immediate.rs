@@ -14,7 +14,7 @@
 
 use core::ops::Deref;
 
-use super::contract::{Limits, Plan};
+use super::contract::{Plan, PlanLimits};
 use crate::judging::FiringContext;
 use crate::schedule::{MAX_PERIOD, Phase, Schedule};
 use crate::sensor_set::SensorSet;
@@ -206,9 +206,9 @@ impl<T: Deref<Target = Schedule<K, M>>, const K: usize, const M: usize> Plan for
         FiringContext::new(Phase(if ended { previous_phase::<M>(turn.phase) } else { turn.phase }))
     }
 
-    fn limits(&self) -> Limits<'_> {
+    fn limits(&self) -> PlanLimits<'_> {
         // It fires only what has ended.
-        Limits { longest_window: Micros::MAX, verified_for: None, audible: None }
+        PlanLimits { longest_window: Micros::MAX, verified_for: None, audible: None }
     }
 
     fn min_refire(&self) -> Micros {

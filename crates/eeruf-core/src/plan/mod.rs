@@ -10,7 +10,7 @@ mod immediate;
 mod scheduled;
 
 pub use check::{BrokenPromise, check_plan};
-pub use contract::{Limits, Plan, Upcoming};
+pub use contract::{Plan, PlanLimits, Upcoming};
 pub use immediate::{ImmediateRefiring, Refiring};
 pub use scheduled::{ScheduledFiring, TableFiring};
 

@@ -3,7 +3,7 @@
 
 use core::ops::Deref;
 
-use super::contract::{Limits, Plan, Upcoming};
+use super::contract::{Plan, PlanLimits, Upcoming};
 use crate::judging::FiringContext;
 use crate::own_limits::{InUse, OwnLimits, SensorLimits};
 use crate::schedule::{MAX_SENSORS, Phase, Schedule, VerifiedFor};
@@ -192,7 +192,7 @@ const fn settling_time<const K: usize, const M: usize>(schedule: &Schedule<K, M>
     }
 }
 
-impl<'s> Limits<'s> {
+impl<'s> PlanLimits<'s> {
     /// Limits under a schedule whose sensors have limits of their own, of which this is the most: none of them fires
     /// again within its own window.
     fn of_most(most: &'s VerifiedFor) -> Self {
@@ -202,12 +202,12 @@ impl<'s> Limits<'s> {
 
 impl<const K: usize, const M: usize> Schedule<K, M> {
     /// Limits that it sets to a ring.
-    pub(crate) const fn limits(&self) -> Limits<'_> {
+    pub(crate) const fn limits(&self) -> PlanLimits<'_> {
         let audible = match self.verified_for() {
             Some(verified_for) => verified_for.audible,
             None => self.period(),
         };
-        Limits { longest_window: self.min_refire(), verified_for: self.verified_for(), audible: Some(audible) }
+        PlanLimits { longest_window: self.min_refire(), verified_for: self.verified_for(), audible: Some(audible) }
     }
 }
 
@@ -331,13 +331,13 @@ impl<T: Deref<Target = Schedule<K, M>>, const K: usize, const M: usize, U: OwnLi
         }))
     }
 
-    fn limits(&self) -> Limits<'_> {
-        self.own_limits.most().map_or_else(|| self.schedule.limits(), Limits::of_most)
+    fn limits(&self) -> PlanLimits<'_> {
+        self.own_limits.most().map_or_else(|| self.schedule.limits(), PlanLimits::of_most)
     }
 
-    fn next_limits(&self) -> Option<Limits<'_>> {
+    fn next_limits(&self) -> Option<PlanLimits<'_>> {
         let next = self.next_schedule.as_deref()?;
-        Some(self.own_limits.next_most().map_or_else(|| next.limits(), Limits::of_most))
+        Some(self.own_limits.next_most().map_or_else(|| next.limits(), PlanLimits::of_most))
     }
 
     fn hears(&self, receiver: u8, emitter: u8) -> bool {

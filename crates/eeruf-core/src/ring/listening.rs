@@ -2,7 +2,7 @@
 
 use super::config::{RingConfig, Silence};
 use super::sensor::UNANSWERED;
-use crate::plan::{Limits, Plan};
+use crate::plan::{Plan, PlanLimits};
 use crate::reading::ReadingKind;
 use crate::ring_error::{LONGEST, MAX_AUDIBLE, PLAUSIBLE, RingError, within};
 use crate::time::{Micros, shorter};
@@ -182,7 +182,7 @@ impl Listening {
 
     /// Lateness that the firings of one period may have together so that crosstalk still moves by more than it must: a
     /// quarter of what is to spare, as no two readings hear more than four periods.
-    pub(super) fn spare(&self, limits: Limits<'_>) -> u16 {
+    pub(super) fn spare(&self, limits: PlanLimits<'_>) -> u16 {
         let Some(verified_for) = limits.verified_for else { return 0 };
         let change = self.asked_path_change().unwrap_or(self.t_delta());
         let needed = self.t_delta().saturating_add(change).saturating_add(Micros::new(1));
@@ -203,7 +203,7 @@ impl Listening {
     }
 }
 
-fn allowed(t_delta: Micros, window: Micros, limits: Limits<'_>) -> Result<(), RingError> {
+fn allowed(t_delta: Micros, window: Micros, limits: PlanLimits<'_>) -> Result<(), RingError> {
     if let Some(verified_for) = limits.verified_for {
         if t_delta > verified_for.t_delta {
             return Err(RingError::TDelta { t_delta, verified: verified_for.t_delta });

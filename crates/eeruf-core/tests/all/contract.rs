@@ -4,7 +4,7 @@ use eeruf_core::tables::{TABLE_I_A, TABLE_I_D};
 use eeruf_core::{
     Instant, Micros, Phase,
     judge::FiringContext,
-    plan::{BrokenPromise, ImmediateRefiring, Limits, Plan, ScheduledFiring, check_plan},
+    plan::{BrokenPromise, ImmediateRefiring, Plan, PlanLimits, ScheduledFiring, check_plan},
 };
 
 const START: Instant = Instant::from_micros(u32::MAX - 500_000);
@@ -123,7 +123,7 @@ impl Plan for Faulty {
         self.inner.last_firing(sensor, periods_ago)
     }
 
-    fn limits(&self) -> Limits<'_> {
+    fn limits(&self) -> PlanLimits<'_> {
         self.inner.limits()
     }
 
@@ -235,8 +235,8 @@ impl Plan for Metronome {
         FiringContext::new(Phase::A)
     }
 
-    fn limits(&self) -> Limits<'_> {
-        Limits { longest_window: self.every, verified_for: None, audible: None }
+    fn limits(&self) -> PlanLimits<'_> {
+        PlanLimits { longest_window: self.every, verified_for: None, audible: None }
     }
 
     fn min_refire(&self) -> Micros {
@@ -331,8 +331,8 @@ impl Plan for Periods {
         FiringContext::new(Phase::A)
     }
 
-    fn limits(&self) -> Limits<'_> {
-        Limits { longest_window: self.every, verified_for: None, audible: None }
+    fn limits(&self) -> PlanLimits<'_> {
+        PlanLimits { longest_window: self.every, verified_for: None, audible: None }
     }
 
     fn min_refire(&self) -> Micros {

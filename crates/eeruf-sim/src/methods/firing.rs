@@ -5,7 +5,7 @@ use core::fmt;
 
 use eeruf_core::{
     Instant, MAX_PERIOD, MAX_PHASES, MAX_SENSORS, Micros, Phase,
-    plan::{Limits, Plan},
+    plan::{Plan, PlanLimits},
 };
 
 /// A rule by which the sensors of one robot's ring fire. Hand it to a simulation with [`Own`](crate::Own).
@@ -330,8 +330,8 @@ impl Plan for PeriodFiring {
         eeruf_core::judge::FiringContext::new(self.fired_in.get(usize::from(sensor)).copied().unwrap_or(self.phase))
     }
 
-    fn limits(&self) -> Limits<'_> {
-        Limits { longest_window: self.refire, verified_for: None, audible: None }
+    fn limits(&self) -> PlanLimits<'_> {
+        PlanLimits { longest_window: self.refire, verified_for: None, audible: None }
     }
 
     fn min_refire(&self) -> Micros {

@@ -3,7 +3,7 @@
 
 use eeruf_core::{
     Instant, MAX_PHASES, MAX_SENSORS, Micros, Phase,
-    plan::{Limits, Plan},
+    plan::{Plan, PlanLimits},
 };
 
 use super::firing::{FiringMethod, FiringPeriod, OwnError};
@@ -347,9 +347,9 @@ impl Plan for LanePlan {
         eeruf_core::judge::FiringContext::new(Phase::A)
     }
 
-    fn limits(&self) -> Limits<'_> {
+    fn limits(&self) -> PlanLimits<'_> {
         // It fires only what has ended.
-        Limits { longest_window: Micros::MAX, verified_for: None, audible: None }
+        PlanLimits { longest_window: Micros::MAX, verified_for: None, audible: None }
     }
 
     fn min_refire(&self) -> Micros {

@@ -8,7 +8,7 @@
 use std::error::Error;
 use std::fmt::Write;
 
-use eeruf_logs::{Doctor, Examination, Options as ReadOptions, Verdict, read_stream};
+use eeruf_logs::{Doctor, Examination, LogVerdict, Options as ReadOptions, read_stream};
 use eeruf_sim::experiments::set_one::Alcove;
 use eeruf_sim::{Cause, Method, Motion, Noise, Options, Physics, Readings, Robot, Vector, World, simulate, sweep};
 
@@ -188,7 +188,7 @@ pub(crate) fn main(arguments: &[String]) -> crate::Answer {
             let all = all.into_iter().collect::<Result<Vec<_>, _>>()?;
             let logs = |is: &dyn Fn(&Outcome) -> bool| all.iter().filter(|outcome| is(outcome)).count();
             let of = |verdict| logs(&|outcome: &Outcome| outcome.examination.verdict == verdict);
-            let well = |outcome: &Outcome| outcome.examination.verdict == Verdict::NoneSeen;
+            let well = |outcome: &Outcome| outcome.examination.verdict == LogVerdict::NoneSeen;
             let sums = |outcome: &Outcome| outcome.heard.map(|row| row.iter().sum::<u32>());
             let fooled = |o: &Outcome| -> Vec<usize> { (0..SENSORS).filter(|&s| sums(o)[s] >= 20).collect() };
             let named = |o: &Outcome, s: &usize| o.examination.fooled.contains(s);
@@ -202,22 +202,22 @@ pub(crate) fn main(arguments: &[String]) -> crate::Answer {
                     logs(&|o| o.examination.pairs.iter().any(|&(x, y)| o.heard[x][y] < 5 && o.heard[y][x] < 5)),
                     all.len(),
                 ),
-                (logs(&|o| o.alone.verdict == Verdict::Crosstalk), all.len()),
+                (logs(&|o| o.alone.verdict == LogVerdict::Crosstalk), all.len()),
             ];
             sum.iter_mut().zip(counts).for_each(|(sum, (part, of))| *sum = [sum[0] + part, sum[1] + of]);
             if drives || !["at once", "constant lags"].contains(&way) {
-                (telling, verdicts) = (telling + all.len(), verdicts + all.len() - of(Verdict::CannotTell));
+                (telling, verdicts) = (telling + all.len(), verdicts + all.len() - of(LogVerdict::CannotTell));
             }
             println!(
                 "| {way} | {} | {} | {} | {} | {} of {} | {} | {} |",
                 if drives { "drives" } else { "stands" },
-                of(Verdict::Crosstalk),
-                of(Verdict::NoneSeen),
-                of(Verdict::CannotTell),
+                of(LogVerdict::Crosstalk),
+                of(LogVerdict::NoneSeen),
+                of(LogVerdict::CannotTell),
                 sensors(&named),
                 sensors(&|_, _| true),
                 share(sensors(&|o, s| o.tells[*s] && named(o, s)), sensors(&|o, s| o.tells[*s])),
-                share(logs(&|o| o.alone.verdict == Verdict::NoneSeen), all.len()),
+                share(logs(&|o| o.alone.verdict == LogVerdict::NoneSeen), all.len()),
             );
         }
     }

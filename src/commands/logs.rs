@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use eeruf_files::Kind;
-use eeruf_logs::{Doctor, Examination, FiringLog, Pattern, Reading, Report, Settings, Verdict, diagnose_while};
+use eeruf_logs::{Doctor, Examination, FiringLog, LogVerdict, Pattern, Reading, Report, Settings, diagnose_while};
 use serde::Serialize;
 use serde_json::{Value, json as object};
 
@@ -111,9 +111,9 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         by_firings(&log, &report.names(), &mut examination);
     }
     let answer = match examination.verdict {
-        Verdict::Crosstalk => Answer::No,
-        Verdict::NoneSeen => Answer::Yes,
-        Verdict::CannotTell => Answer::NotDecided,
+        LogVerdict::Crosstalk => Answer::No,
+        LogVerdict::NoneSeen => Answer::Yes,
+        LogVerdict::CannotTell => Answer::NotDecided,
     };
     if args.json {
         print_line(to_json(&json(&report, &sensors, &examination)))?;
@@ -150,7 +150,7 @@ fn by_firings(log: &FiringLog, names: &[String], found: &mut Examination) {
         ));
     }
     if !found.fooled.is_empty() {
-        (found.verdict, found.record) = (Verdict::Crosstalk, None);
+        (found.verdict, found.record) = (LogVerdict::Crosstalk, None);
         found.reasons.remove(0);
     }
 }

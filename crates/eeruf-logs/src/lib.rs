@@ -96,7 +96,7 @@ pub use diagnose::{
     Diagnosis, FoundPath, Hearing, KeepGoing, Named, Settings, Share, Timing, TimingError, diagnose, diagnose_while,
     timing,
 };
-pub use doctor::{Doctor, Examination, Suspect, Verdict};
+pub use doctor::{Doctor, Examination, LogVerdict, Suspect};
 #[cfg(feature = "files")]
 pub use files::{read_from, read_log, read_stream};
 pub use firings::{Firing, FiringLog};

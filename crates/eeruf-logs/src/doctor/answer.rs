@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use super::{Examination, Verdict};
+use super::{Examination, LogVerdict};
 use crate::pattern::{FiringPattern, Pattern};
 
 impl Examination {
@@ -16,12 +16,12 @@ impl Examination {
         let mut suspects: Vec<usize> = found.suspects.iter().map(|of| of.sensor).collect();
         suspects.dedup();
         let (answer, whom) = match found.verdict {
-            Verdict::Crosstalk => ("Crosstalk: sensors read each other's sound.", list(&found.fooled)),
-            Verdict::NoneSeen => ("No crosstalk seen.", String::new()),
-            Verdict::CannotTell if !suspects.is_empty() => {
+            LogVerdict::Crosstalk => ("Crosstalk: sensors read each other's sound.", list(&found.fooled)),
+            LogVerdict::NoneSeen => ("No crosstalk seen.", String::new()),
+            LogVerdict::CannotTell if !suspects.is_empty() => {
                 ("Perhaps crosstalk: a test of 20 seconds decides.", list(&suspects))
             }
-            Verdict::CannotTell => ("This log cannot tell whether there is crosstalk.", String::new()),
+            LogVerdict::CannotTell => ("This log cannot tell whether there is crosstalk.", String::new()),
         };
         let mut text = answer.to_owned();
         if !whom.is_empty() {
@@ -31,12 +31,12 @@ impl Examination {
             }
         }
         let mut steps: Vec<String> = found.suspects.iter().map(|of| of.test.clone()).collect();
-        if found.verdict == Verdict::Crosstalk && steps.is_empty() {
+        if found.verdict == LogVerdict::Crosstalk && steps.is_empty() {
             let fooled = found.fooled.first().map_or("?", name);
             steps.push(format!("to be sure: fire none but {fooled} for 20 s; if its readings differ, it read others"));
         }
         let is_free = found.suspects.iter().any(|of| of.by.is_none());
-        if found.verdict == Verdict::Crosstalk || !suspects.is_empty() {
+        if found.verdict == LogVerdict::Crosstalk || !suspects.is_empty() {
             steps.push(sketch(firing.pattern, is_free, whom.split(", ").next().unwrap_or("?")));
             steps.push(
                 "then `eeruf design RING.toml --emit arduino` for waits that reject it; `eeruf examples` has rings"
@@ -44,7 +44,7 @@ impl Examination {
             );
         }
         let first = names.first().map_or("?", String::as_str);
-        if found.verdict == Verdict::CannotTell && suspects.is_empty() && names.len() > 1 {
+        if found.verdict == LogVerdict::CannotTell && suspects.is_empty() && names.len() > 1 {
             steps.push(format!(
                 "hold a cloth before {first} for 10 s, then before each other sensor: if the range of another changes, \
                  it reads that one"

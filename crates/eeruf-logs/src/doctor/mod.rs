@@ -28,7 +28,7 @@ const LEAST_SHARE: f64 = 0.05;
 
 /// The verdict of a log on crosstalk.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum Verdict {
+pub enum LogVerdict {
     /// Sensors read each other's sound.
     Crosstalk,
     /// The log would show it, and does not.
@@ -38,7 +38,7 @@ pub enum Verdict {
     CannotTell,
 }
 
-impl Verdict {
+impl LogVerdict {
     /// The name, as `eeruf logs --json` prints it.
     pub const fn as_str(self) -> &'static str {
         match self {
@@ -53,7 +53,7 @@ impl Verdict {
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Examination {
     /// The verdict.
-    pub verdict: Verdict,
+    pub verdict: LogVerdict,
     /// The sensors that read foreign sound, from 0, in order.
     pub fooled: Vec<usize>,
     /// Pairs of sensors that read each other's sound.
@@ -86,14 +86,14 @@ pub struct Suspect {
 /// Collects the readings of a log.
 ///
 /// ```
-/// use eeruf_logs::{Doctor, Options, Verdict, read_stream};
+/// use eeruf_logs::{Doctor, Options, LogVerdict, read_stream};
 /// // Two sensors in turn, each 40 ms after the other.
 /// let rows = (0..200).map(|n| format!("{},{},{}\n", 40 * n, n % 2, 1.0 + 0.001 * f64::from(n % 3)));
 /// let text = format!("ms,sensor,m\n{}", rows.collect::<String>());
 /// let (options, mut doctor) = (Options::default(), Doctor::new(343.2));
 /// let report = read_stream(text.as_bytes(), "log".as_ref(), &options, |_, reading| doctor.push(reading))?;
 /// let found = doctor.examine(&report.firing, &report.names());
-/// assert_eq!(found.verdict, Verdict::NoneSeen, "{:?}", found.reasons);
+/// assert_eq!(found.verdict, LogVerdict::NoneSeen, "{:?}", found.reasons);
 /// # Ok::<(), eeruf_files::FileError>(())
 /// ```
 pub struct Doctor {
@@ -178,10 +178,10 @@ impl Doctor {
         let scatter: Vec<Scatter> = self.sensors.iter().map(Series::scatter).collect();
         let cleared = self.silent_rounds(&scatter, &name, &mut found);
         self.suspects(&scatter, &cleared, &name, &mut found);
-        if found.verdict == Verdict::NoneSeen
+        if found.verdict == LogVerdict::NoneSeen
             && let Some(suspect) = found.suspects.first()
         {
-            found.verdict = Verdict::CannotTell;
+            found.verdict = LogVerdict::CannotTell;
             found.reasons = vec![format!(
                 "{}; if the times are those of reading the modules and not of firing, each fires by itself",
                 suspect.reason
@@ -249,7 +249,7 @@ impl Doctor {
                 let is_fooled = seen.count >= FEWEST && seen.deviations >= DEVIATIONS && seen.share >= LEAST_SHARE;
                 cleared[receiver] &= seen.count >= MANY && !is_fooled;
                 if is_fooled {
-                    found.verdict = Verdict::Crosstalk;
+                    found.verdict = LogVerdict::Crosstalk;
                     found.fooled.push(receiver);
                     found.suspects.push(Suspect {
                         sensor: receiver,
@@ -371,7 +371,7 @@ impl Doctor {
             }
         }
         if !found.fooled.is_empty() {
-            found.verdict = Verdict::Crosstalk;
+            found.verdict = LogVerdict::Crosstalk;
         } else if blurred > 0.0 {
             found.reasons.push(format!(
                 "readings scatter by {blurred:.0} us, which hides what moves by the steps of the lags: no crosstalk of \
@@ -380,7 +380,7 @@ impl Doctor {
             found.record =
                 Some("the same with echo times in microseconds, or with larger steps of the lags".to_owned());
         } else if few + unclear == 0 && self.sensors.len() > 1 {
-            found.verdict = Verdict::NoneSeen;
+            found.verdict = LogVerdict::NoneSeen;
             found.reasons.push(
                 "lags alternate, and the readings of no sensor depend on them: less than about one in ten is another's \
                  sound"
@@ -434,7 +434,7 @@ impl Doctor {
             });
             found.record = Some(CHANGE.to_owned());
         } else {
-            found.verdict = Verdict::Crosstalk;
+            found.verdict = LogVerdict::Crosstalk;
         }
         found
     }
@@ -484,7 +484,7 @@ impl Doctor {
             );
         }
         Examination {
-            verdict: Verdict::NoneSeen,
+            verdict: LogVerdict::NoneSeen,
             reasons: vec![format!(
                 "each sensor fires {gap_ms:.1} ms or more after the one before, when its sound has died away, and in \
                  {rounds} rounds no reading jumps as others' sound does; sound that lasts longer would not show"

@@ -34,13 +34,13 @@ fn alternating_lags_show_foreign_sound_standing_and_driving() {
     for driving_us in [0.0, 30.0] {
         let own = |round: u64, sensor: usize| 9000.0 + driving_us * round as f64 + noise(round, sensor);
         let healthy = examine(2, Pattern::Alternating, |round, sensor| (at(round, sensor), Some(own(round, sensor))));
-        assert_eq!((healthy.verdict, healthy.fooled), (Verdict::NoneSeen, vec![]), "{driving_us}");
+        assert_eq!((healthy.verdict, healthy.fooled), (LogVerdict::NoneSeen, vec![]), "{driving_us}");
         // Sound of sensor 0 that takes 16 ms reaches sensor 1 after 6 or 3 ms.
         let foreign = examine(2, Pattern::Alternating, |round, sensor| {
             let heard = 6000.0 - 3000.0 * (round % 2) as f64 + driving_us * round as f64 + noise(round, sensor);
             (at(round, sensor), Some(if sensor == 1 { heard } else { own(round, sensor) }))
         });
-        assert_eq!((foreign.verdict, foreign.fooled), (Verdict::Crosstalk, vec![1]), "{driving_us}");
+        assert_eq!((foreign.verdict, foreign.fooled), (LogVerdict::Crosstalk, vec![1]), "{driving_us}");
         assert!(foreign.reasons[0].starts_with("s1: 100 % of the readings depend on which of two lags"));
     }
 }
@@ -55,7 +55,7 @@ fn robot_that_drives_up_to_a_wall_and_back_hears_no_other() {
         let far_us = 20_000.0 - (2.0 * 1.5 / 343.2) * driven_us as f64;
         (at(round, sensor), Some(far_us + noise(round, sensor)))
     });
-    assert_eq!((found.verdict, found.fooled), (Verdict::NoneSeen, vec![]), "{:?}", found.reasons);
+    assert_eq!((found.verdict, found.fooled), (LogVerdict::NoneSeen, vec![]), "{:?}", found.reasons);
 }
 
 #[test]
@@ -66,7 +66,7 @@ fn echo_that_fades_at_random_is_no_crosstalk() {
         let echo = if fades(round, sensor) { 12_000.0 } else { 9000.0 };
         (at(round, sensor), Some(echo + noise(round, sensor)))
     });
-    assert_eq!((found.verdict, found.notes.len()), (Verdict::NoneSeen, 2), "{found:?}");
+    assert_eq!((found.verdict, found.notes.len()), (LogVerdict::NoneSeen, 2), "{found:?}");
     assert!(found.notes[0].starts_with("s0: jumps ") && found.notes[0].contains("between 9.0 and 12.0 ms"));
 }
 
@@ -81,13 +81,16 @@ fn two_sensors_that_read_one_path_both_ways_are_a_pair() {
         let heard = if round < 60 { path(round) + lag } else { own(round, sensor) };
         (at(round, sensor), Some(heard + noise(round, sensor)))
     });
-    assert_eq!((found.verdict, &found.pairs[..], &found.fooled[..]), (Verdict::Crosstalk, &[(0, 1)][..], &[0, 1][..]));
+    assert_eq!(
+        (found.verdict, &found.pairs[..], &found.fooled[..]),
+        (LogVerdict::Crosstalk, &[(0, 1)][..], &[0, 1][..])
+    );
     // A wall that both see: their difference drifts through the same value.
     let wall = examine(2, Pattern::ConstantLags, |round, sensor| {
         let turned = if sensor == 1 { 14.0 * round as f64 - 6000.0 } else { 0.0 };
         (at(round, sensor), Some(9000.0 + 8.0 * round as f64 + turned + noise(round, sensor)))
     });
-    assert_eq!((wall.verdict, wall.pairs), (Verdict::CannotTell, vec![]));
+    assert_eq!((wall.verdict, wall.pairs), (LogVerdict::CannotTell, vec![]));
     assert!(wall.record.is_some_and(|record| record.contains("lags that change")));
 }
 
@@ -96,9 +99,9 @@ fn a_log_that_would_not_show_crosstalk_cannot_tell() {
     let steady = |round: u64, sensor: usize| (60_000 * round, Some(9000.0 + noise(round, sensor)));
     for pattern in [Pattern::AtOnce, Pattern::ConstantLags, Pattern::Unknown, Pattern::Several] {
         let found = examine(2, pattern, steady);
-        assert_eq!((found.verdict, found.record.is_some()), (Verdict::CannotTell, true), "{pattern:?}");
+        assert_eq!((found.verdict, found.record.is_some()), (LogVerdict::CannotTell, true), "{pattern:?}");
     }
-    assert_eq!(examine(2, Pattern::InTurn, steady).verdict, Verdict::NoneSeen);
+    assert_eq!(examine(2, Pattern::InTurn, steady).verdict, LogVerdict::NoneSeen);
 }
 
 #[test]
@@ -144,14 +147,14 @@ fn ranges_refute_times_that_are_those_of_reading() {
         });
         if wrong > 60 {
             told += 1;
-            assert_ne!(polled.verdict, Verdict::NoneSeen, "{seed}: {wrong} wrong: {:?}", polled.reasons);
+            assert_ne!(polled.verdict, LogVerdict::NoneSeen, "{seed}: {wrong} wrong: {:?}", polled.reasons);
         }
         let healthy = examine(4, Pattern::InTurn, |round, module| {
             // A wall that comes nearer, and goes again.
             let way = if seed % 2 == 0 { 0.0 } else { 60.0 * (round % 100).abs_diff(50) as f64 };
             (at(round, module), Some(own(module) + way + noise(round, module)))
         });
-        assert_eq!(healthy.verdict, Verdict::NoneSeen, "{seed}: {:?}", healthy.reasons);
+        assert_eq!(healthy.verdict, LogVerdict::NoneSeen, "{seed}: {:?}", healthy.reasons);
     }
     assert!(told > 15, "{told}");
 }
@@ -172,8 +175,8 @@ fn rounds_without_a_sensor_are_a_pause_test() {
         doctor.examine(&FiringPattern::default(), &["a".to_owned(), "b".to_owned()])
     };
     let found = examined(true);
-    assert_eq!((found.verdict, &found.fooled[..], found.suspects[0].by), (Verdict::Crosstalk, &[1][..], Some(0)));
-    assert_eq!((examined(false).verdict, examined(false).suspects), (Verdict::CannotTell, vec![]));
+    assert_eq!((found.verdict, &found.fooled[..], found.suspects[0].by), (LogVerdict::Crosstalk, &[1][..], Some(0)));
+    assert_eq!((examined(false).verdict, examined(false).suspects), (LogVerdict::CannotTell, vec![]));
 }
 
 // Both fire at one time; a quarter of the readings of sensor 1 is anywhere, always or only where sensor 0 fires.
@@ -193,10 +196,10 @@ fn noise_in_silent_rounds_is_a_sensors_own() {
         doctor.examine(&FiringPattern::default(), &["a".to_owned(), "b".to_owned()])
     };
     let own = examined(false);
-    assert_eq!((own.verdict, &own.suspects[..]), (Verdict::CannotTell, &[][..]));
+    assert_eq!((own.verdict, &own.suspects[..]), (LogVerdict::CannotTell, &[][..]));
     assert!(own.reasons.iter().any(|reason| reason.ends_with(": noise of its own")), "{:?}", own.reasons);
     let foreign = examined(true);
-    assert_eq!((foreign.verdict, &foreign.fooled[..]), (Verdict::Crosstalk, &[1][..]), "{:?}", foreign.reasons);
+    assert_eq!((foreign.verdict, &foreign.fooled[..]), (LogVerdict::Crosstalk, &[1][..]), "{:?}", foreign.reasons);
 }
 
 // The lags alternate by 300 us, which a scatter of 150 us hides.
@@ -208,7 +211,7 @@ fn scatter_that_hides_the_lags_is_said() {
             (at(round, sensor), Some(9000.0 + times * noise(round * round, sensor)))
         })
     };
-    assert_eq!(with(1.0).verdict, Verdict::NoneSeen);
+    assert_eq!(with(1.0).verdict, LogVerdict::NoneSeen);
     let blurred = with(12.0);
-    assert!(blurred.verdict == Verdict::CannotTell && blurred.reasons[0].contains("scatter"), "{blurred:?}");
+    assert!(blurred.verdict == LogVerdict::CannotTell && blurred.reasons[0].contains("scatter"), "{blurred:?}");
 }

@@ -3,7 +3,7 @@
 
 use std::fmt;
 
-use eeruf_logs::{Examination, Verdict};
+use eeruf_logs::{Examination, LogVerdict};
 
 use crate::worlds::{Healthy, blocking_loop, free_running, healthy};
 
@@ -23,7 +23,7 @@ pub(crate) struct Counts {
 }
 
 fn is_blamed(found: &Examination) -> bool {
-    found.verdict == Verdict::Crosstalk || found.suspects.iter().any(|of| of.by.is_some())
+    found.verdict == LogVerdict::Crosstalk || found.suspects.iter().any(|of| of.by.is_some())
 }
 
 impl Counts {
@@ -34,8 +34,8 @@ impl Counts {
             let log = free_running(seed, true, false);
             if log.wrong >= 0.05 {
                 let found = log.examine();
-                let is_seen = found.verdict == Verdict::NoneSeen;
-                let flagged = !found.suspects.is_empty() || found.verdict == Verdict::Crosstalk;
+                let is_seen = found.verdict == LogVerdict::NoneSeen;
+                let flagged = !found.suspects.is_empty() || found.verdict == LogVerdict::Crosstalk;
                 all.free = [all.free[0] + 1, all.free[1] + usize::from(is_seen), all.free[2] + usize::from(flagged)];
             }
             let log = blocking_loop(seed, true);
@@ -57,7 +57,7 @@ impl Counts {
                 all.healthy[2] += usize::from(!chatter && !found.suspects.is_empty());
                 if !chatter && matches!(kind, Healthy::InTurn | Healthy::Alternating) {
                     all.seen[0] += 1;
-                    all.seen[1] += usize::from(found.verdict == Verdict::NoneSeen);
+                    all.seen[1] += usize::from(found.verdict == LogVerdict::NoneSeen);
                 }
             }
         }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use eeruf_files::FileError;
-use eeruf_logs::{FieldChoice, Options, RangeUnit, Reading, Report, Table, TimeUnit, read_log};
+use eeruf_logs::{FieldChoice, LogReading, Options, RangeUnit, Report, Table, TimeUnit, read_log};
 
 use crate::files::error::InputError;
 use crate::files::implausible::warn;
@@ -137,7 +137,7 @@ impl LogArgs {
 pub(crate) fn read_shown(
     file: &Path,
     options: &Options,
-    mut each: impl FnMut(&Report, &Reading),
+    mut each: impl FnMut(&Report, &LogReading),
 ) -> Result<Report, FileError> {
     let (mut watch, mut count) = (Watch::unstoppable(), 0_u64);
     read_log(file, options, |report, reading| {

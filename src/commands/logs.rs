@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
 use eeruf_files::Kind;
-use eeruf_logs::{Doctor, Examination, FiringLog, LogVerdict, Pattern, Reading, Report, Settings, diagnose_while};
+use eeruf_logs::{Doctor, Examination, FiringLog, LogReading, LogVerdict, Pattern, Report, Settings, diagnose_while};
 use serde::Serialize;
 use serde_json::{Value, json as object};
 
@@ -67,7 +67,7 @@ struct Sensor {
 }
 
 impl Sensor {
-    fn count(&mut self, reading: &Reading) {
+    fn count(&mut self, reading: &LogReading) {
         self.readings += 1;
         match reading.echo() {
             eeruf_logs::Echo::At(range_m) => {

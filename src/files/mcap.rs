@@ -8,7 +8,7 @@ use std::sync::Arc;
 
 use eeruf_core::ReadingKind;
 use eeruf_files::FileError;
-use eeruf_logs::{Marker, McapWriter, Placement, Reading, Shape, Transform};
+use eeruf_logs::{LogReading, Marker, McapWriter, Placement, Shape, Transform};
 use eeruf_sim::experiments::set_two::TrackPoint;
 use eeruf_sim::{HeardPath, Moment, Point, Pose, Readings, Scene, SensorId, Simulation, Vector, World};
 
@@ -254,7 +254,7 @@ fn readings(out: &mut McapWriter, stage: &Stage<'_>, run: &Readings) -> Result<(
         let c = stage.scene(run.fired_s[k]).air().speed_of_sound();
         let metres = |us: f64| if us.is_nan() { f64::INFINITY } else { 0.5e-6 * us * c };
         let fired_ns = at_ns(run.fired_s[k]);
-        let reading = Reading {
+        let reading = LogReading {
             sensor: usize::from(id.sensor),
             at_ns: Some(fired_ns),
             radiation: 0,
@@ -271,7 +271,7 @@ fn readings(out: &mut McapWriter, stage: &Stage<'_>, run: &Readings) -> Result<(
         }
         if run.is_accepted(k) {
             let range_m = if run.kind[k] == ReadingKind::Clear { f64::INFINITY } else { metres(run.t_echo_us[k]) };
-            out.range(&format!("{topic}/accepted"), &frame, &Reading { range_m, ..reading })?;
+            out.range(&format!("{topic}/accepted"), &frame, &LogReading { range_m, ..reading })?;
         }
         if let Some(points) = run.path_of(k).and_then(|path| corners(stage, path, run.emitted_s[k])) {
             let is_own = run.path_of(k).is_some_and(|path| path.emitter == path.receiver);

@@ -171,7 +171,7 @@ fn exchanged_scene_is_drawn_from_then_on() {
     }
     assert!(paths.len() > 200 && crossed >= 1, "{crossed} of {}", paths.len());
     let mut ranges = vec![];
-    let read = |_: &eeruf_logs::Report, reading: &eeruf_logs::Reading| {
+    let read = |_: &eeruf_logs::Report, reading: &eeruf_logs::LogReading| {
         ranges.push((reading.at_ns.unwrap(), reading.range_m));
     };
     read_log(&file, &ReadOptions::default(), read).unwrap();

@@ -8,7 +8,7 @@ use eeruf_files::FileError;
 
 use crate::form::{self, Form, Packing, UntilError};
 use crate::options::{self, Options};
-use crate::reading::Reading;
+use crate::reading::LogReading;
 use crate::sink::{Report, Sink};
 use crate::{bytes, flight, mcap, ros1, rosbag2, serial, text};
 
@@ -21,7 +21,11 @@ use crate::{bytes, flight, mcap, ros1, rosbag2, serial, text};
 /// # Errors
 /// A file that cannot be opened, a folder without bag files, a form that is known and not read, or an option that does
 /// not fit the log. Of a log that is damaged, what can be read is.
-pub fn read_log(file: &Path, options: &Options, mut each: impl FnMut(&Report, &Reading)) -> Result<Report, FileError> {
+pub fn read_log(
+    file: &Path,
+    options: &Options,
+    mut each: impl FnMut(&Report, &LogReading),
+) -> Result<Report, FileError> {
     if file.as_os_str() == "-" {
         return read_stream(io::stdin().lock(), file, options, each);
     }
@@ -58,7 +62,7 @@ pub fn read_from(
     mut input: impl Read + Seek,
     name: &Path,
     options: &Options,
-    mut each: impl FnMut(&Report, &Reading),
+    mut each: impl FnMut(&Report, &LogReading),
 ) -> Result<Report, FileError> {
     let failed = |error: io::Error| FileError::reading(name, &error);
     let mut sink = Sink::new(options, &mut each);
@@ -78,7 +82,7 @@ pub fn read_stream(
     mut input: impl Read,
     name: &Path,
     options: &Options,
-    mut each: impl FnMut(&Report, &Reading),
+    mut each: impl FnMut(&Report, &LogReading),
 ) -> Result<Report, FileError> {
     let mut sink = Sink::new(options, &mut each);
     let first = form::first_bytes(&mut input).map_err(|error| FileError::reading(name, &error))?;

@@ -7,7 +7,7 @@ use std::path::Path;
 use eeruf_files::FileError;
 
 use crate::bytes::{Bytes, Order};
-use crate::reading::{Reading, Sensor};
+use crate::reading::{LogReading, Sensor};
 use crate::sink::{Sink, Skipped};
 
 /// A flight log's form.
@@ -77,7 +77,7 @@ pub(crate) fn read(flight: Flight, input: &mut dyn Read, file: &Path, sink: &mut
             sink.report.sensors.len() - 1
         });
         sink.report.messages += 1;
-        sink.reading(&Reading {
+        sink.reading(&LogReading {
             sensor,
             at_ns: Some(of.at_us.saturating_mul(1000)),
             radiation: 0,

@@ -6,7 +6,7 @@ use eeruf_core::judge::Verdict;
 use eeruf_core::{EchoFilter, Micros, ReadingKind, RingError, SensorError, Tally};
 use eeruf_files::FileError;
 
-use crate::reading::{Echo, Reading, Sensor};
+use crate::reading::{Echo, LogReading, Sensor};
 use crate::write::McapWriter;
 
 /// A rule for ranges, each sensor by itself: consecutive readings agree.
@@ -115,7 +115,7 @@ impl Judging {
     /// # Errors
     /// A reading without a time, where the judge or the file needs one; a range that sound does not cover within an
     /// hour; a file that cannot be written.
-    pub fn push(&mut self, sensors: &[Sensor], reading: &Reading) -> Result<Option<ReadingKind>, FileError> {
+    pub fn push(&mut self, sensors: &[Sensor], reading: &LogReading) -> Result<Option<ReadingKind>, FileError> {
         while self.sensors.len() <= reading.sensor {
             let (filter, counted) = (self.fresh.clone(), Counted::default());
             self.sensors.push(Judged { filter, counted, clock: Clock::default() });
@@ -146,7 +146,7 @@ impl Judging {
 }
 
 impl Judged {
-    fn judge(&mut self, reading: &Reading, speed_of_sound: f64) -> Result<Option<ReadingKind>, String> {
+    fn judge(&mut self, reading: &LogReading, speed_of_sound: f64) -> Result<Option<ReadingKind>, String> {
         // Each filter has one sensor, so that it knows it.
         let failed = |error: SensorError| error.to_string();
         if let Some(at_ns) = reading.at_ns {
@@ -193,7 +193,12 @@ fn untimed(thing_needs: &str) -> String {
 }
 
 /// The reading as it was, and beside it what is accepted.
-fn write(out: &mut McapWriter, sensor: &Sensor, reading: &Reading, kind: Option<ReadingKind>) -> Result<(), FileError> {
+fn write(
+    out: &mut McapWriter,
+    sensor: &Sensor,
+    reading: &LogReading,
+    kind: Option<ReadingKind>,
+) -> Result<(), FileError> {
     let topic = sensor.beam.map_or_else(|| sensor.topic.clone(), |beam| format!("{}/beam_{beam}", sensor.topic));
     out.range(&topic, &sensor.frame, reading)?;
     let range_m = match kind {
@@ -202,5 +207,5 @@ fn write(out: &mut McapWriter, sensor: &Sensor, reading: &Reading, kind: Option<
         Some(ReadingKind::TooEarly) => f64::NEG_INFINITY,
         _ => return Ok(()),
     };
-    out.range(&format!("{topic}/accepted"), &sensor.frame, &Reading { range_m, ..*reading })
+    out.range(&format!("{topic}/accepted"), &sensor.frame, &LogReading { range_m, ..*reading })
 }

@@ -104,7 +104,7 @@ pub use firings::{Firing, FiringLog};
 pub use judging::{Counted, Judging, RangeJudge};
 pub use options::{FieldChoice, Options, RangeUnit, Table, TimeUnit};
 pub use pattern::{FiringPattern, Pattern};
-pub use reading::{Echo, Reading, Sensor};
+pub use reading::{Echo, LogReading, Sensor};
 pub use replay::{FlowSettings, Replayed, replay_flow};
 #[cfg(feature = "files")]
 pub use ros2::{Marker, Placement, Shape, Transform};
@@ -123,7 +123,7 @@ pub fn read_text(
     input: impl Read,
     name: &Path,
     options: &Options,
-    mut each: impl FnMut(&Report, &Reading),
+    mut each: impl FnMut(&Report, &LogReading),
 ) -> Result<Report, FileError> {
     let mut sink = Sink::new(options, &mut each);
     sink.form("text");

@@ -8,7 +8,7 @@ use std::rc::Rc;
 use crate::bytes::{Bytes, Order};
 use crate::names;
 use crate::options::{Options, RangeUnit};
-use crate::reading::Reading;
+use crate::reading::LogReading;
 use crate::schema::{Header, Schema};
 
 /// Encoding of a topic's messages.
@@ -155,7 +155,7 @@ impl Kind {
         encoding: Encoding,
         message: &[u8],
         recorded_ns: u64,
-        readings: &mut Vec<Reading>,
+        readings: &mut Vec<LogReading>,
     ) -> Result<Vec<u8>, Undecoded> {
         let mut fields = match encoding {
             Encoding::Cdr => Fields::cdr(message),
@@ -187,12 +187,12 @@ impl Kind {
 }
 
 /// Numbers as readings, in the order of their places.
-fn push_all(header: &Header, values: Vec<f64>, recorded_ns: u64, readings: &mut Vec<Reading>) -> Option<Vec<u8>> {
+fn push_all(header: &Header, values: Vec<f64>, recorded_ns: u64, readings: &mut Vec<LogReading>) -> Option<Vec<u8>> {
     if values.len() > MOST_BEAMS {
         return None;
     }
     let at_ns = Some(if header.stamp_ns == 0 { recorded_ns } else { header.stamp_ns });
-    readings.extend(values.into_iter().enumerate().map(|(sensor, range_m)| Reading {
+    readings.extend(values.into_iter().enumerate().map(|(sensor, range_m)| LogReading {
         sensor,
         at_ns,
         radiation: 0,
@@ -270,7 +270,7 @@ impl<'a> Fields<'a> {
         Some((if stamp == 0 { recorded_ns } else { stamp }, frame))
     }
 
-    fn range(&mut self, variance: Option<bool>, recorded_ns: u64, readings: &mut Vec<Reading>) -> Option<&'a [u8]> {
+    fn range(&mut self, variance: Option<bool>, recorded_ns: u64, readings: &mut Vec<LogReading>) -> Option<&'a [u8]> {
         let (at_ns, frame) = self.header(recorded_ns)?;
         let radiation = self.bytes.u8()?;
         let field_of_view_rad = self.f32()?;
@@ -280,7 +280,7 @@ impl<'a> Fields<'a> {
             (Some(true) | None, 4) => Some(self.f32()?),
             _ => return None,
         };
-        readings.push(Reading {
+        readings.push(LogReading {
             sensor: 0,
             at_ns: Some(at_ns),
             radiation,
@@ -297,7 +297,7 @@ impl<'a> Fields<'a> {
         &mut self,
         most: usize,
         recorded_ns: u64,
-        readings: &mut Vec<Reading>,
+        readings: &mut Vec<LogReading>,
     ) -> Result<Option<&'a [u8]>, Undecoded> {
         let Some((at_ns, frame)) = self.header(recorded_ns) else { return Ok(None) };
         let Some(numbers) = self.numbers::<7>() else { return Ok(None) };
@@ -313,7 +313,7 @@ impl<'a> Fields<'a> {
         for beam in 0..beams {
             let Some(range) = self.f32() else { return Ok(None) };
             let after_ns = f64::from(time_increment.max(0.0)) * beam as f64 * 1e9;
-            readings.push(Reading {
+            readings.push(LogReading {
                 sensor: beam,
                 at_ns: Some(at_ns.saturating_add(after_ns as u64)),
                 radiation: 0,
@@ -328,7 +328,7 @@ impl<'a> Fields<'a> {
     }
 
     /// `PointCloud2`: how far its points are from the origin.
-    fn points2(&mut self, recorded_ns: u64, readings: &mut Vec<Reading>) -> Option<Vec<u8>> {
+    fn points2(&mut self, recorded_ns: u64, readings: &mut Vec<LogReading>) -> Option<Vec<u8>> {
         let (stamp_ns, frame) = self.header(recorded_ns)?;
         let (height, width, count) = (self.u32()? as usize, self.u32()? as usize, self.u32()?);
         let mut axes = [None; 3];

@@ -24,7 +24,7 @@ impl Sensor {
 
 /// One reading of one sensor, in the units of `sensor_msgs/Range`.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Reading {
+pub struct LogReading {
     /// The sensor, as an index into [`Report::sensors`](crate::Report::sensors).
     pub sensor: usize,
     /// The time in nanoseconds: the header's stamp, or when the message was recorded if the stamp is zero.
@@ -56,7 +56,7 @@ pub enum Echo {
     Invalid,
 }
 
-impl Reading {
+impl LogReading {
     /// The meaning of the range by REP 117.
     pub fn echo(&self) -> Echo {
         let Self { range_m, min_range_m, max_range_m, .. } = *self;

@@ -6,7 +6,7 @@ use std::fmt::Write;
 use crate::cdr::Cdr;
 use crate::firing_messages::{FIRING, FIRING_FIELDS};
 use crate::firings::Firing;
-use crate::reading::Reading;
+use crate::reading::LogReading;
 
 /// Position and orientation in a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -171,8 +171,8 @@ pub(crate) const MARKERS: Type = Type {
     ],
 };
 
-pub(crate) fn range(out: &mut Cdr, frame: &str, reading: &Reading) {
-    let Reading { radiation, field_of_view_rad, min_range_m, max_range_m, range_m, variance, .. } = *reading;
+pub(crate) fn range(out: &mut Cdr, frame: &str, reading: &LogReading) {
+    let LogReading { radiation, field_of_view_rad, min_range_m, max_range_m, range_m, variance, .. } = *reading;
     out.header(reading.at_ns.unwrap_or(0), frame);
     out.u8(radiation);
     let [min, max, range] = [min_range_m, max_range_m, range_m].map(|metres| metres as f32);

@@ -7,7 +7,7 @@ use eeruf_serial::{Decoder, FiringMessage, FrameError, Message};
 
 use crate::firings::{Firing, FiringLog};
 use crate::options::{Options, Parts, RangeUnit};
-use crate::reading::{Reading, Sensor};
+use crate::reading::{LogReading, Sensor};
 use crate::sink::Sink;
 use eeruf_files::FileError;
 
@@ -97,7 +97,7 @@ pub(crate) fn read(input: impl Read, file: &Path, options: &Options, sink: &mut 
             sink.report.sensors.push(Sensor { topic, frame: String::new(), beam: None });
         }
         sink.report.messages += 1;
-        sink.reading(&Reading {
+        sink.reading(&LogReading {
             sensor,
             at_ns: u64::try_from(at_us).ok().map(|us| 1000 * us),
             radiation: 0,

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::options::{Options, Parts};
 use crate::pattern::{FiringPattern, Stamps};
-use crate::reading::{Echo, Reading, Sensor};
+use crate::reading::{Echo, LogReading, Sensor};
 use eeruf_files::FileError;
 
 /// Contents of a log, and what of it could not be read.
@@ -68,7 +68,7 @@ const LISTED: usize = 100;
 pub(crate) struct Topics {
     /// Number of messages that were found, of whatever type and whether or not they could be read.
     pub(crate) found: u64,
-    pub(crate) buffer: Vec<Reading>,
+    pub(crate) buffer: Vec<LogReading>,
     /// Topics with readings.
     pub(crate) names: std::collections::HashSet<String>,
     /// Topics of which one warning is enough.
@@ -78,7 +78,7 @@ pub(crate) struct Topics {
 /// Takes messages, and hands on readings.
 pub(crate) struct Sink<'a> {
     pub(crate) report: Report,
-    pub(crate) each: &'a mut dyn FnMut(&Report, &Reading),
+    pub(crate) each: &'a mut dyn FnMut(&Report, &LogReading),
     more_damage: u64,
     pub(crate) options: &'a Options,
     #[cfg(feature = "files")]
@@ -91,7 +91,7 @@ pub(crate) struct Sink<'a> {
 }
 
 impl<'a> Sink<'a> {
-    pub(crate) fn new(options: &'a Options, each: &'a mut dyn FnMut(&Report, &Reading)) -> Self {
+    pub(crate) fn new(options: &'a Options, each: &'a mut dyn FnMut(&Report, &LogReading)) -> Self {
         Self {
             report: Report::default(),
             each,
@@ -116,7 +116,7 @@ impl<'a> Sink<'a> {
     }
 
     /// A reading that came in no message.
-    pub(crate) fn reading(&mut self, reading: &Reading) {
+    pub(crate) fn reading(&mut self, reading: &LogReading) {
         self.stamps.push(reading.sensor, reading.at_ns, finite(reading));
         (self.each)(&self.report, reading);
     }
@@ -151,7 +151,7 @@ impl<'a> Sink<'a> {
     }
 }
 
-pub(crate) fn finite(reading: &Reading) -> Option<f64> {
+pub(crate) fn finite(reading: &LogReading) -> Option<f64> {
     match reading.echo() {
         Echo::At(range_m) => Some(range_m),
         _ => None,

@@ -10,7 +10,7 @@ use ::mcap::{WriteOptions, Writer};
 
 use crate::cdr::Cdr;
 use crate::firings::Firing;
-use crate::reading::Reading;
+use crate::reading::LogReading;
 use crate::ros2::{self, Marker, Transform, Type};
 use eeruf_files::FileError;
 
@@ -51,7 +51,7 @@ impl McapWriter {
     ///
     /// # Errors
     /// If the file cannot be written.
-    pub fn range(&mut self, topic: &str, frame: &str, reading: &Reading) -> Result<(), FileError> {
+    pub fn range(&mut self, topic: &str, frame: &str, reading: &LogReading) -> Result<(), FileError> {
         let at_ns = reading.at_ns.unwrap_or(0);
         self.write(topic, &ros2::RANGE, at_ns, |out| ros2::range(out, frame, reading))
     }

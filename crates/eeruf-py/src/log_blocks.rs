@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use eeruf_core::Micros;
 use eeruf_files::FileError;
 use eeruf_logs::{
-    Counted, Doctor, Examination, FieldChoice, Judging, McapWriter, Options, RangeJudge, RangeUnit, Reading, Report,
+    Counted, Doctor, Examination, FieldChoice, Judging, LogReading, McapWriter, Options, RangeJudge, RangeUnit, Report,
     Table, TimeUnit, read_from, read_log, read_stream,
 };
 use numpy::PyReadonlyArray1;
@@ -77,7 +77,7 @@ impl LogBlocks {
         };
         let work = Work::begin(py, object, move |file, results| {
             let mut reader = Blocks::new(&options, judging, rows, results);
-            let each = |report: &Report, reading: &Reading| reader.take(report, reading);
+            let each = |report: &Report, reading: &LogReading| reader.take(report, reading);
             let report = match file {
                 None => read_log(&name, &options, each),
                 Some(file) if is_sought => read_from(file, &name, &options, each),
@@ -128,7 +128,7 @@ impl Blocks {
         Self { block: Block::default(), rows, doctor, judging, results, is_over: false }
     }
 
-    fn take(&mut self, report: &Report, reading: &Reading) {
+    fn take(&mut self, report: &Report, reading: &LogReading) {
         if self.is_over {
             return;
         }
@@ -175,7 +175,7 @@ fn counted(judging: Option<&Judging>) -> Vec<Counted> {
 }
 
 impl Block {
-    fn push(&mut self, reading: &Reading) {
+    fn push(&mut self, reading: &LogReading) {
         self.sensor.push(reading.sensor as i64);
         self.at_ns.push(reading.at_ns.map_or(-1, u64::cast_signed));
         self.range_m.push(reading.range_m);
@@ -268,7 +268,7 @@ pub(crate) fn judge<'py>(
     let mut kinds = room(rows)?;
     for row in 0..rows {
         let known = usize::try_from(sensor[row]).ok().filter(|&sensor| sensor < MOST_SENSORS);
-        let reading = Reading {
+        let reading = LogReading {
             sensor: known.ok_or_else(|| wrong(&format!("sensor[{row}]"), sensor[row], "0 to 65535"))?,
             at_ns: u64::try_from(at_ns[row]).ok(),
             radiation: 0,

@@ -8,7 +8,7 @@ mod series;
 mod statistics;
 
 use crate::pattern::{FiringPattern, Pattern};
-use crate::reading::{Echo, Reading};
+use crate::reading::{Echo, LogReading};
 
 use loops::looped;
 use mirror::mirrored;
@@ -114,7 +114,7 @@ impl Doctor {
     }
 
     /// Takes a reading. The first 262,144 are kept.
-    pub fn push(&mut self, reading: &Reading) {
+    pub fn push(&mut self, reading: &LogReading) {
         if self.rows.len() == MOST_READINGS {
             self.left_out += 1;
             return;

@@ -9,7 +9,7 @@ fn examine(sensors: usize, pattern: Pattern, reads: impl Fn(u64, usize) -> (u64,
 }
 
 fn push(doctor: &mut Doctor, sensor: usize, (at_us, echo_us): (u64, Option<f64>)) {
-    doctor.push(&Reading {
+    doctor.push(&LogReading {
         sensor,
         at_ns: Some(1000 * at_us),
         radiation: 0,

@@ -4,7 +4,7 @@ use std::collections::{BTreeSet, HashMap};
 use std::path::Path;
 
 use crate::options::{Options, RangeUnit, TimeUnit};
-use crate::reading::{Reading, Sensor};
+use crate::reading::{LogReading, Sensor};
 use crate::sink::{Sink, Skipped};
 
 use super::column::{Column, Role};
@@ -335,7 +335,7 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
         self.sink.report.messages += 1;
         for (index, range_m) in found {
             let Some(sensor) = sensor_of_row.or(self.sensors[index]) else { continue };
-            let reading = Reading {
+            let reading = LogReading {
                 sensor,
                 at_ns,
                 radiation: 0,

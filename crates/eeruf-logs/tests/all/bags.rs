@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use eeruf_logs::{Echo, Options, Reading, Report};
+use eeruf_logs::{Echo, LogReading, Options, Report};
 
 use crate::{BAGS, bag, read};
 
@@ -21,7 +21,7 @@ fn stamp(message: usize) -> u64 {
 }
 
 /// The readings of each topic `/sonar/N` are those that went in, in order.
-fn holds(name: &str, report: &Report, readings: &[Reading], messages: usize, variance: Option<f32>) {
+fn holds(name: &str, report: &Report, readings: &[LogReading], messages: usize, variance: Option<f32>) {
     for (sensor, of) in report.sensors.iter().enumerate().filter(|(_, sensor)| sensor.beam.is_none()) {
         let number: usize = of.topic.strip_prefix("/sonar/").unwrap().parse().unwrap();
         assert_eq!(of.frame, format!("sonar_{number}"));

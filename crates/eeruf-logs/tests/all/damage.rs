@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use eeruf_logs::{McapWriter, Options, Reading};
+use eeruf_logs::{LogReading, McapWriter, Options};
 
 use crate::random::Random;
 use crate::{BAGS, bag, read};
@@ -88,7 +88,7 @@ fn a_wrong_length_in_mcap_takes_no_more_than_its_chunk() {
     let folder = tempfile::tempdir().unwrap();
     let file = folder.path().join("out.mcap");
     let mut out = McapWriter::create(&file).unwrap();
-    let reading = Reading {
+    let reading = LogReading {
         sensor: 0,
         at_ns: Some(1),
         radiation: 0,
@@ -100,7 +100,7 @@ fn a_wrong_length_in_mcap_takes_no_more_than_its_chunk() {
     };
     let messages = 60_000;
     for number in 0..messages {
-        out.range("/sonar", "s", &Reading { at_ns: Some(number), ..reading }).unwrap();
+        out.range("/sonar", "s", &LogReading { at_ns: Some(number), ..reading }).unwrap();
     }
     out.finish().unwrap();
     let whole = std::fs::read(&file).unwrap();

@@ -21,7 +21,7 @@ use std::io::Cursor;
 use std::path::{Path, PathBuf};
 
 use eeruf_files::FileError;
-use eeruf_logs::{Options, Reading, Report, Sensor, read_from, read_log, read_stream};
+use eeruf_logs::{LogReading, Options, Report, Sensor, read_from, read_log, read_stream};
 
 /// The bags that `write_bags.py` writes.
 const BAGS: [&str; 10] = [
@@ -60,11 +60,11 @@ fn bag(name: &str, folder: &Path) -> PathBuf {
 }
 
 /// All readings of a log, which are the same from its file, from memory, and as a stream.
-fn read(file: &Path, options: &Options) -> Result<(Report, Vec<Reading>), FileError> {
+fn read(file: &Path, options: &Options) -> Result<(Report, Vec<LogReading>), FileError> {
     let of_file = read_by(|each| read_log(file, options, each));
     if let Ok(bytes) = std::fs::read(file) {
         // Readings may be no numbers, which equal nothing.
-        let said = |read: &Result<(Report, Vec<Reading>), FileError>| format!("{read:?}");
+        let said = |read: &Result<(Report, Vec<LogReading>), FileError>| format!("{read:?}");
         let in_memory = read_by(|each| read_from(Cursor::new(&bytes), file, options, each));
         let streamed = read_by(|each| read_stream(&bytes[..], file, options, each));
         assert_eq!((said(&in_memory), said(&streamed)), (said(&of_file), said(&of_file)));
@@ -73,8 +73,8 @@ fn read(file: &Path, options: &Options) -> Result<(Report, Vec<Reading>), FileEr
 }
 
 fn read_by(
-    by: impl FnOnce(&mut dyn FnMut(&Report, &Reading)) -> Result<Report, FileError>,
-) -> Result<(Report, Vec<Reading>), FileError> {
+    by: impl FnOnce(&mut dyn FnMut(&Report, &LogReading)) -> Result<Report, FileError>,
+) -> Result<(Report, Vec<LogReading>), FileError> {
     let mut readings = Vec::new();
     let mut met = Vec::<Sensor>::new();
     let report = by(&mut |report, reading| {

@@ -1,10 +1,10 @@
 //! Output of `McapWriter`.
 
-use eeruf_logs::{McapWriter, Options, Reading, read_log};
+use eeruf_logs::{LogReading, McapWriter, Options, read_log};
 
 use crate::read;
 
-const READING: Reading = Reading {
+const READING: LogReading = LogReading {
     sensor: 0,
     at_ns: Some(1_700_000_000_123_456_789),
     radiation: 0,
@@ -24,14 +24,14 @@ fn what_was_written_is_read_back() {
     for (number, range_m) in ranges.into_iter().enumerate() {
         // Texts of every length modulo four, since fields behind them are aligned.
         let (topic, frame) = (format!("/sonar/{number}"), "f".repeat(number));
-        out.range(&topic, &frame, &Reading { range_m, ..READING }).unwrap();
+        out.range(&topic, &frame, &LogReading { range_m, ..READING }).unwrap();
     }
     out.finish().unwrap();
     let (report, readings) = read(&file, &Options::default()).unwrap();
     assert_eq!((report.damage.len(), report.names()[3].as_str()), (0, "/sonar/3"));
     assert_eq!(report.sensors[3].frame, "fff");
     for (sensor, (range_m, reading)) in ranges.into_iter().zip(readings).enumerate() {
-        assert_eq!(reading, Reading { sensor, range_m, ..READING });
+        assert_eq!(reading, LogReading { sensor, range_m, ..READING });
     }
 }
 
@@ -42,7 +42,7 @@ fn of_two_chunks_a_damaged_one_takes_nothing_from_the_other() {
     let mut out = McapWriter::create(&file).unwrap();
     let messages = 60_000;
     for number in 0..messages {
-        out.range("/sonar", "s", &Reading { range_m: f64::from(number % 977) / 256.0, ..READING }).unwrap();
+        out.range("/sonar", "s", &LogReading { range_m: f64::from(number % 977) / 256.0, ..READING }).unwrap();
     }
     out.finish().unwrap();
     let mut bytes = std::fs::read(&file).unwrap();

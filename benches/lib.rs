@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use eeruf_core::search::{Budget, WaitProblem, WaitSearch, memory_words};
 use eeruf_core::tables::PAPER_12;
 use eeruf_core::{Criterion, Instant as Now, Layout, Micros, Requirements, Ring, RingConfig, RingEvent};
-use eeruf_design::{RingSpec, Search};
+use eeruf_design::{Effort, RingSpec};
 use eeruf_period::PeriodProblem;
 
 /// Runs something for a fifth of a second, at least once, and prints the shortest time, and how many things that is a
@@ -61,7 +61,7 @@ fn period_of_ring_8() -> Option<u32> {
 pub fn design_of_file() -> Option<u32> {
     let text = "sensors = 12\nt_delta_us = 999\nmin_interval_us = 15_000\nwindow_us = 30_000";
     let spec = RingSpec::from_text(black_box(text)).ok()?;
-    let design = spec.shortest(&Search { what_if: true, ..Search::default() }, &mut ()).ok()?;
+    let design = spec.shortest(&Effort { what_if: true, ..Effort::default() }, &mut ()).ok()?;
     design.found.value.map(Micros::as_micros)
 }
 

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use eeruf_core::search::Progress;
 use eeruf_core::{Micros, Phase};
 use eeruf_design::certificate::Stated;
-use eeruf_design::{FoundJson, RingDesign, RingSpec, Search, WhatIf};
+use eeruf_design::{Effort, FoundJson, RingDesign, RingSpec, WhatIf};
 use eeruf_files::emit::Emit as _;
 use serde::Serialize;
 
@@ -136,7 +136,7 @@ fn shortest(ring: &str) -> Result<RingDesign, String> {
     }
     let spec = RingSpec::from_text(ring).map_err(|error| error.to_string())?;
     let budget = if spec.sensors > FEW { BUDGET_OF_MANY } else { BUDGET };
-    let found = spec.shortest(&Search { budget, what_if: false, atlas: ATLAS }, &mut say);
+    let found = spec.shortest(&Effort { budget, what_if: false, atlas: ATLAS }, &mut say);
     let design = found.map_err(|none| none.to_string())?;
     LAST.set(Some((ring.to_owned(), design.clone())));
     Ok(design)

@@ -8,7 +8,7 @@ use clap::builder::PossibleValue;
 use eeruf_core::Micros;
 use eeruf_core::search::Progress;
 use eeruf_design::atlas::ATLAS;
-use eeruf_design::{CURVE_BUDGET, FoundJson, How, Need, NoDesign, RingDesign, RingSpec, RoomsAnswer, Search, Way};
+use eeruf_design::{CURVE_BUDGET, Effort, FoundJson, How, Need, NoDesign, RingDesign, RingSpec, RoomsAnswer, Way};
 use eeruf_files::emit;
 use eeruf_sim::experiments::rooms::RoomWay;
 use serde::Serialize;
@@ -206,7 +206,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         watch.control_flow(how_far)
     };
     let atlas = if args.no_atlas { "" } else { ATLAS };
-    let search = Search { budget: args.budget.unwrap_or(BUDGET), what_if: args.form().is_none(), atlas };
+    let search = Effort { budget: args.budget.unwrap_or(BUDGET), what_if: args.form().is_none(), atlas };
     let design = match spec.shortest(&search, &mut control) {
         Ok(design) => design,
         Err(NoDesign::Search(error)) => return Err(InputError::new(&args.file, error)),
@@ -361,7 +361,7 @@ fn curve_of(args: &Args, spec: &RingSpec, need: Need) -> Result<Answer, InputErr
     let mut watch = Watch::ending_after(args.time_limit.unwrap_or(Duration::MAX));
     let mut control = |progress: &Progress| watch.control_flow(|| format!("{} nodes of a point", progress.nodes));
     let atlas = if args.no_atlas { "" } else { ATLAS };
-    let search = Search { budget: args.budget.unwrap_or(CURVE_BUDGET), what_if: false, atlas };
+    let search = Effort { budget: args.budget.unwrap_or(CURVE_BUDGET), what_if: false, atlas };
     let points = spec.curve(need, &search, &mut control).map_err(|error| InputError::new(&args.file, error))?;
     drop(watch);
     let seconds = began.elapsed().as_secs_f64();

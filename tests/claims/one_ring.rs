@@ -4,7 +4,7 @@
 use std::collections::BTreeMap;
 
 use eeruf_core::{Instant, Micros, Ring, RingConfig, plan::ScheduledFiring};
-use eeruf_design::{RingSpec, Search};
+use eeruf_design::{Effort, RingSpec};
 use eeruf_hc_sr04::{HcSr04Ring, Settings};
 use eeruf_sim::modules::{Module, ModulesFile, PulseTimes};
 
@@ -313,7 +313,7 @@ fn settings(said: &Said, table: &Table) -> Option<Settings> {
 
 /// A ring by the table of the library, and the driver around it.
 fn driver_says(file: &str, text: &str, said: &Said, table: &Table, c: &BTreeMap<String, Vec<u32>>) -> bool {
-    let design = RingSpec::from_text(text).unwrap().shortest(&Search::default(), &mut ()).unwrap();
+    let design = RingSpec::from_text(text).unwrap().shortest(&Effort::default(), &mut ()).unwrap();
     let verified = design.schedule.verified_each(&design.spec.table_requirements()).unwrap();
     let blanking = Micros::new(c.get("blanking").map_or(0, |blanking| blanking[0]));
     let config = RingConfig::new().with_blanking(blanking);

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use eeruf_core::{Micros, ReadingKind};
-use eeruf_design::{RingSpec, Search, robot_ring};
+use eeruf_design::{Effort, RingSpec, robot_ring};
 use eeruf_files::emit::Emit as _;
 use eeruf_sim::{Method, Options, World, simulate};
 
@@ -50,7 +50,7 @@ fn car_and_mower_fire_as_their_ring_files_say() {
     for (name, modules, places) in [("car-12", car, ""), ("mower-8-and-4", mower, &*places)] {
         let text = std::fs::read_to_string(format!("rings/{name}.toml")).unwrap();
         let spec = RingSpec::from_text(&text).unwrap();
-        let design = spec.shortest(&Search::default(), &mut ()).unwrap();
+        let design = spec.shortest(&Effort::default(), &mut ()).unwrap();
         let schedule = format!("[robot.schedule]\n{}", design.schedule.to_toml());
         let more = format!("{places}{}\nblanking_us = 900\n{schedule}", makes(&modules));
         let world = scene(&format!("{name}.toml"), &more).unwrap();

@@ -11,7 +11,7 @@ use eeruf_period::{ToSpare, engine::prove::NoProof};
 use crate::certificate::{Stated, certify};
 use crate::found::FoundJson;
 use crate::ring::RingSpec;
-use crate::shortest::{Search, Shortest, shortest};
+use crate::shortest::{Effort, Shortest, shortest};
 use crate::what_if::WhatIf;
 
 /// The number of larger separations that are tried where firings cannot be moved apart.
@@ -135,7 +135,7 @@ impl RingSpec {
     ///
     /// # Errors
     /// Why there is none.
-    pub fn shortest(&self, search: &Search, control: &mut impl Control) -> Result<RingDesign, NoDesign> {
+    pub fn shortest(&self, search: &Effort, control: &mut impl Control) -> Result<RingDesign, NoDesign> {
         let mut design = self.shortest_at_once(search, control)?;
         if self.handling > Micros::ZERO {
             design = self.one_by_one(design, search, control)?;
@@ -147,7 +147,7 @@ impl RingSpec {
     }
 
     /// Like [`shortest`](Self::shortest), for a controller that fires any number of sensors at once.
-    fn shortest_at_once(&self, search: &Search, control: &mut impl Control) -> Result<RingDesign, NoDesign> {
+    fn shortest_at_once(&self, search: &Effort, control: &mut impl Control) -> Result<RingDesign, NoDesign> {
         match self.speed_mm_s {
             None | Some(0) => self.shortest_at_rest(search, control),
             Some(_) => self.shortest_moving(search, control),
@@ -159,7 +159,7 @@ impl RingSpec {
     fn one_by_one(
         &self,
         at_once: RingDesign,
-        search: &Search,
+        search: &Effort,
         control: &mut impl Control,
     ) -> Result<RingDesign, NoDesign> {
         // What is proven without handling holds with it.
@@ -178,7 +178,7 @@ impl RingSpec {
                 return Ok(design);
             }
             wider = wider.covering(wider.t_delta.saturating_add(step));
-            design = wider.shortest_at_once(&Search { atlas: "", ..*search }, control)?;
+            design = wider.shortest_at_once(&Effort { atlas: "", ..*search }, control)?;
             (design.bound, design.found.bound, design.found.proven) = (bound, bound, false);
             design.bounding = bounding.clone();
             design.reason = format!(
@@ -189,7 +189,7 @@ impl RingSpec {
         Err(NoDesign::Handling)
     }
 
-    fn shortest_at_rest(&self, search: &Search, control: &mut impl Control) -> Result<RingDesign, NoDesign> {
+    fn shortest_at_rest(&self, search: &Effort, control: &mut impl Control) -> Result<RingDesign, NoDesign> {
         let shortest = shortest(&self.problem(), search, control)?;
         Ok(self.design(shortest.schedule, shortest, self.clone()))
     }

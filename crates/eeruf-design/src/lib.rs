@@ -19,10 +19,10 @@
 //! | `asked`, `rooms`, `cost`, `flow`, `way` | feature `rooms`: ways of firing it, judged by the simulator |
 //!
 //! ```
-//! use eeruf_design::{RingSpec, Search};
+//! use eeruf_design::{RingSpec, Effort};
 //! let ring = "sensors = 8\nt_delta_us = 999\nmin_interval_us = 15_000\nwindow_us = 36_000";
 //! let spec = RingSpec::from_text(ring)?;
-//! let design = spec.shortest(&Search::default(), &mut ())?;
+//! let design = spec.shortest(&Effort::default(), &mut ())?;
 //! let period = design.found.value;
 //! assert_eq!(period.map(|period| period.as_micros()), Some(66_000));
 //! assert_eq!(RingSpec::from_text("sensors = 65").unwrap_err().to_string(), "line 1: 65 sensors; expected 1 to 64");
@@ -73,7 +73,7 @@ pub use places::Places;
 pub use questions::{CURVE_BUDGET, CURVE_POINTS, CurvePoint, Fit, Need};
 pub use read::robot_ring;
 pub use ring::RingSpec;
-pub use shortest::{Search, Shortest, shortest};
+pub use shortest::{Effort, Shortest, shortest};
 pub use uneven::OwnedUneven;
 pub use what_if::WhatIf;
 #[cfg(feature = "rooms")]

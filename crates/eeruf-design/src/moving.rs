@@ -18,7 +18,7 @@ use eeruf_period::{PeriodProblem, ToSpare};
 
 use crate::find::{NoDesign, RingDesign};
 use crate::ring::RingSpec;
-use crate::shortest::{SPARE_BUDGET, Search, Shortest, shortest};
+use crate::shortest::{Effort, SPARE_BUDGET, Shortest, shortest};
 
 /// A `t_delta` from which on not even a second of silence between two firings would be enough.
 const TOO_MUCH: Micros = Micros::from_millis(1000);
@@ -33,7 +33,7 @@ struct Region {
 /// The search for one ring.
 pub(crate) struct Moving<'s> {
     spec: &'s RingSpec,
-    search: Search,
+    search: Effort,
     nodes: u64,
 }
 
@@ -52,7 +52,7 @@ impl RingSpec {
     }
 
     /// The shortest period for a ring that moves.
-    pub(crate) fn shortest_moving(&self, search: &Search, control: &mut impl Control) -> Result<RingDesign, NoDesign> {
+    pub(crate) fn shortest_moving(&self, search: &Effort, control: &mut impl Control) -> Result<RingDesign, NoDesign> {
         Moving::new(self, *search).shortest(control)
     }
 
@@ -76,7 +76,7 @@ impl RingSpec {
 }
 
 impl<'s> Moving<'s> {
-    pub(crate) fn new(spec: &'s RingSpec, search: Search) -> Self {
+    pub(crate) fn new(spec: &'s RingSpec, search: Effort) -> Self {
         Self { spec, search, nodes: 0 }
     }
 
@@ -231,7 +231,7 @@ impl<'s> Moving<'s> {
         atlas: &'static str,
         control: &mut impl Control,
     ) -> Result<Shortest, SearchError> {
-        let shortest = shortest(&spec.problem(), &Search { budget: self.left(), atlas, ..self.search }, control)?;
+        let shortest = shortest(&spec.problem(), &Effort { budget: self.left(), atlas, ..self.search }, control)?;
         self.nodes += shortest.found.nodes;
         Ok(shortest)
     }

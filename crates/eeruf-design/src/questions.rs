@@ -7,7 +7,7 @@ use eeruf_files::AnySchedule;
 use crate::find::NoDesign;
 use crate::moving::Moving;
 use crate::ring::RingSpec;
-use crate::shortest::Search;
+use crate::shortest::Effort;
 
 /// The answer to which `t_delta` fits into a period.
 #[derive(Clone, Debug)]
@@ -67,7 +67,7 @@ impl RingSpec {
     /// [`SearchError`] for a period that is no whole number of ticks, and as for [`shortest`](Self::shortest).
     pub fn fit(&self, period: Micros, budget: u64, control: &mut impl Control) -> Result<Fit, SearchError> {
         let ticks = self.problem().in_whole_ticks(period)?;
-        let search = Search { budget, what_if: false, atlas: "" };
+        let search = Effort { budget, what_if: false, atlas: "" };
         let mut fit =
             Fit { schedule: None, spec: self.clone(), t_delta: None, bound: None, fits: None, proven: false, nodes: 0 };
         let mut moving = Moving::new(self, search);
@@ -117,10 +117,10 @@ impl RingSpec {
     pub fn curve(
         &self,
         need: Need,
-        search: &Search,
+        search: &Effort,
         control: &mut impl Control,
     ) -> Result<Vec<CurvePoint>, SearchError> {
-        let search = Search { what_if: false, ..*search };
+        let search = Effort { what_if: false, ..*search };
         let mut points: Vec<CurvePoint> = Vec::new();
         for tenths in 1..=CURVE_POINTS {
             let (spec, value) = self.with(need, tenths);

@@ -17,7 +17,7 @@ use crate::atlas::ATLAS;
 use crate::cost::CostAnswer;
 use crate::find::{NoDesign, RingDesign};
 use crate::ring::RingSpec;
-use crate::shortest::Search;
+use crate::shortest::Effort;
 use crate::way::Way;
 
 /// Radius of a ring that the file has no places for, in metres: a choice, that of a small robot.
@@ -109,7 +109,7 @@ impl RingSpec {
     /// # Errors
     /// As for [`RingSpec::shortest`].
     pub fn shortest_to_study(&self) -> Result<Option<RingDesign>, SearchError> {
-        let search = Search { budget: STUDY_BUDGET, what_if: false, atlas: ATLAS };
+        let search = Effort { budget: STUDY_BUDGET, what_if: false, atlas: ATLAS };
         match self.shortest(&search, &mut ()) {
             Err(NoDesign::Search(error)) => Err(error),
             found => Ok(found.ok()),

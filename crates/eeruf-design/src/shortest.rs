@@ -12,7 +12,7 @@ pub(crate) const SPARE_BUDGET: u64 = 30_000;
 
 /// The effort of a search.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Search {
+pub struct Effort {
     /// Largest number of nodes to visit before giving the best schedule so far.
     pub budget: u64,
     /// True to look for what would make the period shorter.
@@ -22,7 +22,7 @@ pub struct Search {
     pub atlas: &'static str,
 }
 
-impl Default for Search {
+impl Default for Effort {
     /// 50 million nodes, no look at what would be shorter; the atlas may answer.
     fn default() -> Self {
         Self { budget: 50_000_000, what_if: false, atlas: atlas::ATLAS }
@@ -52,7 +52,7 @@ pub struct Shortest {
 /// [`SearchError`] for needs that make no sense or are too large to search.
 pub fn shortest(
     problem: &PeriodProblem<'_>,
-    search: &Search,
+    search: &Effort,
     control: &mut impl Control,
 ) -> Result<Shortest, SearchError> {
     if let Some(known) = known(problem, search.atlas)? {

@@ -1,6 +1,6 @@
 //! Claims of a search that ends before its proof, for a ring whose robot moves.
 
-use eeruf_design::{NoDesign, RingSpec, Search};
+use eeruf_design::{Effort, NoDesign, RingSpec};
 
 #[test]
 fn bounds_hold_whatever_the_budget() {
@@ -10,7 +10,7 @@ fn bounds_hold_whatever_the_budget() {
              60\nspeed_m_s = 0.5\ntick_us = 100\n"
         );
         let spec = RingSpec::from_text(&ring).unwrap();
-        let within = |budget| spec.shortest(&Search { budget, what_if: false, atlas: "" }, &mut ());
+        let within = |budget| spec.shortest(&Effort { budget, what_if: false, atlas: "" }, &mut ());
         let shortest = within(1_000_000).unwrap().found;
         assert!(shortest.proven);
         let mut unproven = 0;
@@ -36,7 +36,7 @@ fn faster_needs_are_compared_with_printed_ones() {
     let ring = "sensors = 8\nlayout = \"line\"\nneighbours = 4\nmax_range_m = 4\ncrosstalk_range_m = 2\n\
                 jitter_us = 60\nspeed_m_s = 1\ntick_us = 100\n";
     let spec = RingSpec::from_text(ring).unwrap();
-    let search = Search { budget: 100_000, what_if: true, atlas: "" };
+    let search = Effort { budget: 100_000, what_if: true, atlas: "" };
     let design = spec.shortest(&search, &mut ()).unwrap();
     let needed = format!("instead of {}", design.t_delta);
     assert!(

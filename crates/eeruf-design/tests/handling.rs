@@ -1,11 +1,11 @@
 //! `handling_us`: firings apart by what the controller needs for one, and nothing else given up for it.
 
 use eeruf_core::{Micros, Phase, Requirements};
-use eeruf_design::{NoDesign, RingDesign, RingSpec, Search};
+use eeruf_design::{Effort, NoDesign, RingDesign, RingSpec};
 
 fn designed(text: &str) -> Result<RingDesign, NoDesign> {
     let spec = RingSpec::from_text(text).expect("a ring");
-    spec.shortest(&Search::default(), &mut ())
+    spec.shortest(&Effort::default(), &mut ())
 }
 
 fn ring(sensors: usize, more: &str) -> String {

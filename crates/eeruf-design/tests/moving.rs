@@ -5,10 +5,10 @@ mod common;
 
 use common::Random;
 use eeruf_core::Micros;
-use eeruf_design::{NoDesign, RingDesign, RingSpec, Search};
+use eeruf_design::{Effort, NoDesign, RingDesign, RingSpec};
 
 fn design(spec: &RingSpec, budget: u64) -> Result<RingDesign, NoDesign> {
-    spec.shortest(&Search { budget, what_if: false, atlas: "" }, &mut ())
+    spec.shortest(&Effort { budget, what_if: false, atlas: "" }, &mut ())
 }
 
 /// A tiny ring file at up to 3 m/s, or now and then 40 m/s, where motion asks for several ticks. They are so coarse

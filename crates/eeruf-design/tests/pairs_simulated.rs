@@ -3,7 +3,7 @@
 use std::f64::consts::TAU;
 
 use eeruf_core::Micros;
-use eeruf_design::{RingSpec, Search};
+use eeruf_design::{Effort, RingSpec};
 use eeruf_sim::{Air, Cause, Method, Noise, Options, Pose, Readings, Robot, Scene, Transducer, Wall, World, simulate};
 
 const CAR: &str = include_str!("../../../rings/car-12.toml");
@@ -19,7 +19,7 @@ fn corridor(spec: &RingSpec, bursts_per_s: f64) -> World {
     let circle = Robot::ring(Pose::identity(), spec.sensors, TAU / spec.sensors as f64, 0.2, Transducer::HC_SR04);
     let of_layout = || Robot::of_ring(&spec.robot_ring(), Pose::identity(), Some(circle.sensors)).expect("a robot");
     let mut robot = spec.room_robot().map_or_else(|_| of_layout(), |of_file| of_file.robot);
-    let design = spec.shortest(&Search::default(), &mut ()).expect("a schedule");
+    let design = spec.shortest(&Effort::default(), &mut ()).expect("a schedule");
     robot.schedule = Some(design.schedule);
     robot.period = design.schedule.period();
     let mut walls = vec![Wall::new(-9.0, -1.5, 9.0, -1.5), Wall::new(9.0, 1.5, -9.0, 1.5)];

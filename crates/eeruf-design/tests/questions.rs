@@ -1,9 +1,9 @@
 //! Schedules that fit into a period, and curves of needs, against the shortest period.
 
 use eeruf_core::Micros;
-use eeruf_design::{CURVE_POINTS, Need, RingSpec, Search};
+use eeruf_design::{CURVE_POINTS, Effort, Need, RingSpec};
 
-const SEARCH: Search = Search { budget: 200_000, what_if: false, atlas: "" };
+const SEARCH: Effort = Effort { budget: 200_000, what_if: false, atlas: "" };
 
 fn ring(text: &str) -> RingSpec {
     RingSpec::from_text(text).unwrap_or_else(|error| panic!("{error}\n{text}"))

@@ -5,7 +5,7 @@ mod common;
 
 use common::Random;
 use eeruf_core::Micros;
-use eeruf_design::{RingDesign, RingSpec, Search};
+use eeruf_design::{Effort, RingDesign, RingSpec};
 
 /// A ring file in metres, without its tick.
 fn random_ring(seed: u64) -> String {
@@ -34,7 +34,7 @@ fn random_ring(seed: u64) -> String {
 
 fn in_ticks_of(text: &str, tick_us: u32) -> RingDesign {
     let spec = RingSpec::from_text(&format!("{text}tick_us = {tick_us}\n")).expect("a ring");
-    let search = Search { budget: 200_000, what_if: false, atlas: "" };
+    let search = Effort { budget: 200_000, what_if: false, atlas: "" };
     spec.shortest(&search, &mut ()).expect("a schedule")
 }
 

@@ -6,14 +6,14 @@ mod common;
 use common::{accepted, small};
 use eeruf_core::Micros;
 use eeruf_design::certificate::Stated;
-use eeruf_design::{RingDesign, RingSpec, Search};
+use eeruf_design::{Effort, RingDesign, RingSpec};
 
 fn read(text: &str) -> RingSpec {
     RingSpec::from_text(text).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
 fn design(spec: &RingSpec) -> RingDesign {
-    let found = spec.shortest(&Search { budget: 1_000_000, what_if: false, atlas: "" }, &mut ());
+    let found = spec.shortest(&Effort { budget: 1_000_000, what_if: false, atlas: "" }, &mut ());
     found.expect("there is a schedule")
 }
 
@@ -85,7 +85,7 @@ fn what_would_make_an_uneven_ring_faster_is_said_and_true() {
     let text = "sensors = 4\nlayout = \"line\"\nneighbours = 2\nt_delta_us = [999, 499, 499, 499]\n\
                 window_us = 25_000\nmin_interval_us = 9_000\n";
     let shared = read(&format!("{text}shared_lines = [[0, 1], [2, 3]]"));
-    let search = Search { budget: 1_000_000, what_if: true, atlas: "" };
+    let search = Effort { budget: 1_000_000, what_if: true, atlas: "" };
     let found = shared.shortest(&search, &mut ()).expect("there is a schedule");
     let of = |need: &str| found.what_if.iter().find(|what| what.need.contains(need)).cloned();
     let own = of("an echo line for each").expect("lines are shared");
@@ -172,7 +172,7 @@ fn file_error_names_key_value_and_expectation() {
     assert_eq!(negative, "t_delta_us: integer `-1`; expected a whole number from 0 to 4294967295");
     let long =
         read("sensors = 2\nt_delta_us = 99\nmin_interval_us = 4_000_000_000\nwindow_us = [900, 900]\ntick_us = 1");
-    let error = long.shortest(&Search::default(), &mut ()).unwrap_err().to_string();
+    let error = long.shortest(&Effort::default(), &mut ()).unwrap_err().to_string();
     assert!(
         error.starts_with("firing one by one already takes 8000 s") && error.contains("a shorter interval"),
         "{error}"

@@ -4,7 +4,7 @@ use std::ffi::CString;
 use std::time::{Duration, Instant};
 
 use eeruf_core::search::Progress;
-use eeruf_design::{Search, atlas::ATLAS};
+use eeruf_design::{Effort, atlas::ATLAS};
 use pyo3::{prelude::*, sync::PyOnceLock, types::PyDict};
 
 use crate::{
@@ -112,7 +112,7 @@ pub(crate) fn design<'py>(
             let text = || format!("{} nodes, period {bound} to {best} ticks", at.nodes);
             control_flow(began.elapsed() < limit && go_on(&text))
         };
-        let shortest = spec.shortest(&Search { budget, what_if: false, atlas }, &mut control).map_err(Raise::raise)?;
+        let shortest = spec.shortest(&Effort { budget, what_if: false, atlas }, &mut control).map_err(Raise::raise)?;
         let still = |nodes| began.elapsed() < limit && go_on(&|| format!("certificate: {nodes} nodes"));
         let proof = certificate.then(|| shortest.prove(CERTIFICATE_BUDGET, still)).transpose();
         let proof = proof.map_err(|error| CertificateError::new_err(error.to_string()))?;

@@ -4,7 +4,7 @@ use std::time::Instant;
 
 use eeruf_core::Micros;
 use eeruf_core::search::{Found as FoundSchedule, Progress};
-use eeruf_design::{CURVE_BUDGET, CurvePoint, Need, Search};
+use eeruf_design::{CURVE_BUDGET, CurvePoint, Effort, Need};
 use pyo3::{prelude::*, types::PyDict};
 
 use crate::{
@@ -143,7 +143,7 @@ pub(crate) fn curve<'py>(
     let mut watch = Watch::new(None)?;
     let points = py.detach(|| {
         let mut control = |_: &Progress| control_flow(watch.go_on(None, String::new));
-        let search = Search { budget, ..Search::default() };
+        let search = Effort { budget, ..Effort::default() };
         spec.curve(need, &search, &mut control).map_err(Raise::raise)
     });
     let us = |time: Option<Micros>| time.map(Micros::as_micros);

@@ -17,7 +17,7 @@ use eeruf_core::{
     Edge, Instant, MAX_SENSORS, Micros, Ring, RingConfig, RingError, RingEvent, VerifiedSchedule, judge::Judge,
     plan::Plan,
 };
-use eeruf_design::{FlowDesign, PeriodProblem, RingSpec, Search, shortest};
+use eeruf_design::{Effort, FlowDesign, PeriodProblem, RingSpec, shortest};
 use eeruf_hc_sr04::{HcSr04Ring, Pins, Settings};
 use eeruf_serial::{FiringMessage, Message, Received};
 use embedded_hal::delay::DelayNs;
@@ -72,7 +72,7 @@ impl GpioRing {
             // Each robot throws dice of its own.
             "flow" => Way::Flow(Box::new(spec.flow(RandomState::new().hash_one(0) as u32 | 1)?)),
             "eeruf" => {
-                let search = Search { budget: BUDGET, ..Search::default() };
+                let search = Effort { budget: BUDGET, ..Effort::default() };
                 let found = shortest(&problem, &search, &mut ()).map_err(|error| error.to_string())?;
                 let verified = found.schedule.verified(&problem.requirements);
                 Way::Table(Box::new(verified.map_err(|error| error.to_string())?))

@@ -11,7 +11,7 @@ use eeruf_period::{ToSpare, engine::prove::NoProof};
 use crate::certificate::{Stated, certify};
 use crate::found::FoundJson;
 use crate::ring::RingSpec;
-use crate::shortest::{Effort, Shortest, shortest};
+use crate::shortest::{Effort, FoundPeriod, shortest};
 use crate::what_if::WhatIf;
 
 /// The number of larger separations that are tried where firings cannot be moved apart.
@@ -195,8 +195,8 @@ impl RingSpec {
     }
 
     /// The design of a schedule that serves this ring at its own `t_delta`.
-    pub(crate) fn design(&self, schedule: AnySchedule, shortest: Shortest, bounding: Self) -> RingDesign {
-        let Shortest { found, reason, to_spare, from_atlas, certified, .. } = shortest;
+    pub(crate) fn design(&self, schedule: AnySchedule, shortest: FoundPeriod, bounding: Self) -> RingDesign {
+        let FoundPeriod { found, reason, to_spare, from_atlas, certified, .. } = shortest;
         let t_delta = self.t_delta_needed(&schedule).max(bounding.t_delta);
         let spec = self.covering(t_delta);
         RingDesign {

@@ -73,7 +73,7 @@ pub use places::Places;
 pub use questions::{CURVE_BUDGET, CURVE_POINTS, CurvePoint, Fit, Need};
 pub use read::robot_ring;
 pub use ring::RingSpec;
-pub use shortest::{Effort, Shortest, shortest};
+pub use shortest::{Effort, FoundPeriod, shortest};
 pub use uneven::OwnedUneven;
 pub use what_if::WhatIf;
 #[cfg(feature = "rooms")]

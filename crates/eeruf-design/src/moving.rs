@@ -18,7 +18,7 @@ use eeruf_period::{PeriodProblem, ToSpare};
 
 use crate::find::{NoDesign, RingDesign};
 use crate::ring::RingSpec;
-use crate::shortest::{Effort, SPARE_BUDGET, Shortest, shortest};
+use crate::shortest::{Effort, FoundPeriod, SPARE_BUDGET, shortest};
 
 /// A `t_delta` from which on not even a second of silence between two firings would be enough.
 const TOO_MUCH: Micros = Micros::from_millis(1000);
@@ -124,7 +124,7 @@ impl<'s> Moving<'s> {
         // The preferred schedule may fire less evenly than the first that was found.
         if let Some(schedule) = lower.found.schedule.filter(|schedule| spec.serves(schedule)) {
             lower.found.nodes = self.nodes;
-            return Ok(spec.design(schedule, Shortest { to_spare: None, ..lower }, bounding));
+            return Ok(spec.design(schedule, FoundPeriod { to_spare: None, ..lower }, bounding));
         }
         let bound = lower.found.bound;
         let upper = self.climb(&lower, control)?;
@@ -160,7 +160,7 @@ impl<'s> Moving<'s> {
         }
         let (bounding, certified) = certifiable;
         let found = Found { schedule: Some(schedule), value, bound, proven, nodes: self.nodes };
-        let shortest = Shortest { found, schedule, reason, to_spare, from_atlas: false, certified: None };
+        let shortest = FoundPeriod { found, schedule, reason, to_spare, from_atlas: false, certified: None };
         let design = spec.design(schedule, shortest, bounding);
         Ok(RingDesign { bound: certified, t_delta: needs.t_delta, spec: needs, ..design })
     }
@@ -230,14 +230,14 @@ impl<'s> Moving<'s> {
         spec: &RingSpec,
         atlas: &'static str,
         control: &mut impl Control,
-    ) -> Result<Shortest, SearchError> {
+    ) -> Result<FoundPeriod, SearchError> {
         let shortest = shortest(&spec.problem(), &Effort { budget: self.left(), atlas, ..self.search }, control)?;
         self.nodes += shortest.found.nodes;
         Ok(shortest)
     }
 
     /// A schedule that serves: each next one is for the `t_delta` that the last one needs.
-    fn climb(&mut self, lower: &Shortest, control: &mut impl Control) -> Result<Option<AnySchedule>, SearchError> {
+    fn climb(&mut self, lower: &FoundPeriod, control: &mut impl Control) -> Result<Option<AnySchedule>, SearchError> {
         let mut schedule = lower.schedule;
         while !self.spec.serves(&schedule) {
             let t_delta = self.spec.t_delta_needed(&schedule);

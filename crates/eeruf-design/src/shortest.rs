@@ -31,7 +31,7 @@ impl Default for Effort {
 
 /// Knowledge of the shortest period.
 #[derive(Clone, Debug)]
-pub struct Shortest {
+pub struct FoundPeriod {
     /// The shortest period, or the best found, with the first schedule that has it.
     pub found: Found<MAX_SENSORS>,
     /// The schedule to prefer.
@@ -54,7 +54,7 @@ pub fn shortest(
     problem: &PeriodProblem<'_>,
     search: &Effort,
     control: &mut impl Control,
-) -> Result<Shortest, SearchError> {
+) -> Result<FoundPeriod, SearchError> {
     if let Some(known) = known(problem, search.atlas)? {
         return Ok(known);
     }
@@ -65,16 +65,16 @@ pub fn shortest(
         let (preferred, spare) = problem.prefer(&schedule, SPARE_BUDGET, control)?;
         (schedule, to_spare) = (preferred, Some(spare));
     }
-    Ok(Shortest { found, schedule, reason: shortest.reason, to_spare, from_atlas: false, certified: None })
+    Ok(FoundPeriod { found, schedule, reason: shortest.reason, to_spare, from_atlas: false, certified: None })
 }
 
 /// The atlas's entry for a problem, if it has its shortest period.
-fn known(problem: &PeriodProblem<'_>, rows: &str) -> Result<Option<Shortest>, SearchError> {
+fn known(problem: &PeriodProblem<'_>, rows: &str) -> Result<Option<FoundPeriod>, SearchError> {
     let Some((row, schedule)) = atlas::answer(rows, problem) else { return Ok(None) };
     let period = schedule.period();
     let to_spare = ToSpare { proven: row.preferred, ..problem.spare_of(&schedule) };
     let found = Found { schedule: Some(schedule), value: Some(period), bound: Some(period), proven: true, nodes: 0 };
     let reason = problem.why_shortest(&schedule)?;
     let certified = row.certified.checked_mul(problem.tick.as_micros()).map(Micros::new);
-    Ok(Some(Shortest { found, schedule, reason, to_spare: Some(to_spare), from_atlas: true, certified }))
+    Ok(Some(FoundPeriod { found, schedule, reason, to_spare: Some(to_spare), from_atlas: true, certified }))
 }

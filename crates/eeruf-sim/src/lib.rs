@@ -86,8 +86,8 @@ pub use methods::{
 };
 pub use navigation::{Driven, Himm, LabMate, Vfh};
 pub use results::{
-    Age, Attribution, BELIEF_LASTS_S, Belief, Cause, DEFAULT_TOLERANCE_US, HeardPath, NO_PATH, Readings, SensorId,
-    Summary, quantile,
+    Age, Attribution, BELIEF_LASTS_S, BeliefShares, Cause, DEFAULT_TOLERANCE_US, HeardPath, NO_PATH, Readings,
+    SensorId, Summary, quantile,
 };
 pub use scene::{
     Air, Body, Bounce, Contact, DEFAULT_HEIGHT_M, Edge, Faces, Material, Outline, OutlineError, Pole, Room, Scene,

@@ -1,4 +1,4 @@
-//! [`Belief`]: what a robot believes at any time, which does not depend on how often a method fires.
+//! [`BeliefShares`]: what a robot believes at any time, which does not depend on how often a method fires.
 
 use std::collections::BTreeMap;
 
@@ -14,7 +14,7 @@ pub const BELIEF_LASTS_S: f64 = 0.6;
 /// A believed reading counts from its firing on for [`BELIEF_LASTS_S`], carried on by odometry, unless another takes
 /// its place. At each firing of the sensor it is compared with what the sensor would read alone there.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Belief {
+pub struct BeliefShares {
     /// Right within the tolerance: an echo at the reference, or silence where the sensor alone hears none.
     #[serde(rename = "belief_right")]
     pub right: f64,
@@ -38,23 +38,23 @@ struct Believed {
 
 impl Readings {
     /// The shares with a tolerance in microseconds.
-    pub fn belief(&self, tolerance_us: f64) -> Belief {
+    pub fn belief(&self, tolerance_us: f64) -> BeliefShares {
         let mut sensors: BTreeMap<SensorId, Vec<usize>> = BTreeMap::new();
         for reading in 0..self.len() {
             sensors.entry(self.id(reading)).or_default().push(reading);
         }
-        let mut sum = Belief::default();
+        let mut sum = BeliefShares::default();
         for readings in sensors.values() {
             self.add_sensor(readings, tolerance_us, &mut sum);
         }
         let total_s = self.sensors as f64 * self.duration_s;
         let share = |seconds: f64| if total_s > 0.0 { seconds / total_s } else { 0.0 };
         let [right, phantom, too_far, faint] = [sum.right, sum.phantom, sum.too_far, sum.faint].map(share);
-        Belief { right, unknown: (1.0 - right - phantom - too_far - faint).max(0.0), phantom, too_far, faint }
+        BeliefShares { right, unknown: (1.0 - right - phantom - too_far - faint).max(0.0), phantom, too_far, faint }
     }
 
     /// Adds one sensor's seconds.
-    fn add_sensor(&self, readings: &[usize], tolerance_us: f64, sum: &mut Belief) {
+    fn add_sensor(&self, readings: &[usize], tolerance_us: f64, sum: &mut BeliefShares) {
         let mut believed: Option<Believed> = None;
         for (k, &reading) in readings.iter().enumerate() {
             let (fired_s, cause) = (self.fired_s[reading], self.cause[reading]);
@@ -75,7 +75,7 @@ impl Readings {
 
 impl Believed {
     /// Returns the share of `of` that the belief adds to, with this reference.
-    fn state<'b>(&self, reference_us: f64, tolerance_us: f64, of: &'b mut Belief) -> &'b mut f64 {
+    fn state<'b>(&self, reference_us: f64, tolerance_us: f64, of: &'b mut BeliefShares) -> &'b mut f64 {
         let off_us = self.t_echo_us - reference_us;
         if off_us.abs() <= tolerance_us || (self.t_echo_us.is_nan() && reference_us.is_nan()) {
             return &mut of.right;
@@ -122,7 +122,7 @@ mod tests {
         readings
     }
 
-    fn close(found: Belief, right: f64, unknown: f64, phantom: f64, too_far: f64, faint: f64) {
+    fn close(found: BeliefShares, right: f64, unknown: f64, phantom: f64, too_far: f64, faint: f64) {
         let pairs = [
             (found.right, right),
             (found.unknown, unknown),

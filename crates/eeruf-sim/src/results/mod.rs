@@ -8,6 +8,6 @@ mod readings;
 mod summary;
 
 pub use attribution::Attribution;
-pub use belief::{BELIEF_LASTS_S, Belief};
+pub use belief::{BELIEF_LASTS_S, BeliefShares};
 pub use readings::{Cause, HeardPath, NO_PATH, Readings, SensorId};
 pub use summary::{Age, DEFAULT_TOLERANCE_US, Summary, quantile};

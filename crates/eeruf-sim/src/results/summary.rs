@@ -3,7 +3,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use super::belief::Belief;
+use super::belief::BeliefShares;
 use super::readings::{Cause, Readings};
 use crate::methods::Method;
 
@@ -43,7 +43,7 @@ pub struct Summary {
     pub wrong_before_filter: f64,
     /// Shares of the time by what was last believed.
     #[serde(flatten)]
-    pub belief: Belief,
+    pub belief: BeliefShares,
     /// Accepted echoes that were right in a second of simulated time, all sensors together.
     pub right_echoes_per_s: f64,
     /// Age of the last accepted reading.

@@ -44,7 +44,7 @@ fn run(way: &RoomWay, kinds: &[RoomKind], rooms: u64, (speed_m_s, turn_deg_s): M
         let readings = simulate(&world, way.method, &Options { periods, ..way.options }).unwrap();
         let own: Vec<_> = (0..readings.len()).filter(|&k| readings.robot[k] == 0).collect();
         let summary = Readings { sensors: way.robot.sensors.len(), ..readings.select(&own) }.summary();
-        let Belief { right, phantom, .. } = summary.belief;
+        let BeliefShares { right, phantom, .. } = summary.belief;
         FlowFigures { right: 100.0 * right, phantom: 100.0 * phantom, echoes: summary.right_echoes_per_s }
     });
     let mean = |of: fn(&FlowFigures) -> f64| found.iter().map(of).sum::<f64>() / found.len() as f64;

@@ -11,7 +11,7 @@ use crate::experiments::spread::Spread;
 use crate::{
     acoustics::{GainProfile, Physics},
     maps::OccupancyGrid,
-    results::{Belief, Readings, Summary, quantile},
+    results::{BeliefShares, Readings, Summary, quantile},
     scene::Room,
     simulation::{Options, SimulationError, simulate_while},
     threads::sweep,
@@ -98,7 +98,7 @@ impl RoomGroup {
 pub struct RoomFigures {
     /// Shares of the time by what was last believed.
     #[serde(flatten)]
-    pub belief: Belief,
+    pub belief: BeliefShares,
     /// The mean share that is right lies here with 95 % confidence.
     pub belief_right_95: [f64; 2],
     /// The least of these shares.
@@ -172,7 +172,7 @@ impl Judgement {
 /// One room's figures.
 #[derive(Clone, Copy, Debug)]
 struct Run {
-    belief: Belief,
+    belief: BeliefShares,
     right_echoes_per_s: f64,
     foreign: f64,
     own: f64,
@@ -208,7 +208,7 @@ impl RoomFigures {
         let mean = |value: fn(&Run) -> f64| runs.iter().map(value).sum::<f64>() / runs.len() as f64;
         let median = |value: fn(&Run) -> f64| quantile(&mut runs.iter().map(value).collect::<Vec<_>>(), 0.5);
         Some(Self {
-            belief: Belief {
+            belief: BeliefShares {
                 right: right.mean,
                 unknown: mean(|run| run.belief.unknown),
                 phantom: mean(|run| run.belief.phantom),
@@ -414,7 +414,7 @@ mod tests {
     use crate::methods::Method;
 
     const USUAL: RoomFigures = RoomFigures {
-        belief: Belief { right: 0.9, unknown: 0.1, phantom: 0.0, too_far: 0.0, faint: 0.0 },
+        belief: BeliefShares { right: 0.9, unknown: 0.1, phantom: 0.0, too_far: 0.0, faint: 0.0 },
         belief_right_95: [0.9; 2],
         belief_right_worst: 0.9,
         right_echoes_per_s: 10.0,
@@ -430,7 +430,7 @@ mod tests {
         Run { belief: USUAL.belief, right_echoes_per_s: 1.0, foreign: 0.0, own: 0.0, blind: 0.0, age_p99_ms: 1.0 };
 
     fn right(right: f64, echoes: f64) -> RoomFigures {
-        RoomFigures { belief: Belief { right, ..USUAL.belief }, right_echoes_per_s: echoes, ..USUAL }
+        RoomFigures { belief: BeliefShares { right, ..USUAL.belief }, right_echoes_per_s: echoes, ..USUAL }
     }
 
     fn judged(figures: &[Result<[RoomFigures; 2], &str>]) -> Vec<JudgedWay> {

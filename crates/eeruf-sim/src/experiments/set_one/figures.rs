@@ -44,7 +44,7 @@ pub struct Figures {
     pub age_p99_ms: Option<Spread>,
     /// Accepted readings in a second, all sensors together.
     pub readings_per_s: Option<Spread>,
-    /// Share of the time in which what was last believed is right, as in [`Belief`](crate::Belief).
+    /// Share of the time in which what was last believed is right, as in [`BeliefShares`](crate::BeliefShares).
     pub belief_right: Option<Spread>,
     /// The share in which nothing is believed.
     pub unknown: Option<Spread>,

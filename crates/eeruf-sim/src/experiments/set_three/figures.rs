@@ -4,7 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::{
     experiments::spread::Spread,
-    results::{Belief, Cause, NO_PATH, Readings, Summary},
+    results::{BeliefShares, Cause, NO_PATH, Readings, Summary},
 };
 
 /// A way's figures over placings; shares are fractions of 1, and what counts sensors or seconds is of one robot.
@@ -21,7 +21,7 @@ pub struct Figures {
     pub good_lost: Option<Spread>,
     /// Accepted echoes that were right in a second.
     pub right_echoes_per_s: Option<Spread>,
-    /// Share of the time in which what was last believed is right, as in [`Belief`].
+    /// Share of the time in which what was last believed is right, as in [`BeliefShares`].
     pub belief_right: Option<Spread>,
     /// The share in which nothing is believed.
     pub unknown: Option<Spread>,
@@ -61,7 +61,7 @@ pub struct Run {
     pub right_echoes_per_s: f64,
     /// Shares of the time by what was last believed.
     #[serde(flatten)]
-    pub belief: Belief,
+    pub belief: BeliefShares,
     /// See [`Figures::blind`].
     pub blind: f64,
 }

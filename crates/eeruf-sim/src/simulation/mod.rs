@@ -16,6 +16,7 @@ mod simulate;
 mod steered;
 
 pub(crate) use changing::simulate_in_turn;
+pub(crate) use channels::SharedPaths;
 pub use engine::expected_readings;
 pub(crate) use engine::run;
 pub use engine::{Filter, Filtered, FiredReading, Own};

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::channels::SharedPaths;
 use super::engine::{EventLoop, Own, end_of, plans};
 use super::error::SimulationError;
 use super::kinematics::{Kinematics, Planned};
@@ -316,6 +317,12 @@ impl Simulation {
         self.events.change_scene(Arc::clone(&world), self.now)?;
         self.place = (world, self.happened);
         Ok(())
+    }
+
+    /// Shares the paths of the present scene, until it changes, with simulations of robots that move alike in it and
+    /// differ in how they fire and listen alone.
+    pub(crate) fn share(&mut self, shared: Arc<SharedPaths>) {
+        self.events.share(shared);
     }
 
     /// Returns the pose and speed of a robot now.

@@ -8,7 +8,7 @@ use super::paths::Paths;
 use super::poles::Asked;
 use super::tracer::{Heights, Tracer};
 use crate::{
-    acoustics::Transducer,
+    acoustics::{Piston, Transducer},
     geometry::{Point, Pose, Vector},
     scene::{Bounce, Scene},
 };
@@ -34,6 +34,8 @@ pub struct CriticalPath {
     /// The elevations in radians, upwards positive, at which it leaves and at which the receiver looks; 0 in a flat
     /// scene.
     pub elevations_rad: [f64; 2],
+    /// Amplitude without the patterns.
+    bare: f64,
     bounces: [u32; 2],
 }
 
@@ -269,6 +271,7 @@ impl CrosstalkMatrix {
                         receiver: receiver as u32,
                         length_m: found.length_m[k],
                         amplitude,
+                        bare,
                         order: found.order[k],
                         departure_rad: found.departure_rad[k],
                         arrival_rad: found.arrival_rad[k],
@@ -333,6 +336,39 @@ impl CrosstalkMatrix {
     /// All bounces of all paths, to be numbered otherwise.
     pub(crate) fn bounces_mut(&mut self) -> &mut [Bounce] {
         &mut self.bounces
+    }
+}
+
+/// The change of paths whose ends have moved a little since they were found.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Moved {
+    /// The emitters' and the receivers' patterns.
+    pub(crate) patterns: [Piston; 2],
+    /// As [`CrosstalkQuery::coupling`].
+    pub(crate) coupling: f64,
+}
+
+impl Moved {
+    /// Returns a path whose emitter and receiver were there when it was found, and are here now: by the way that they
+    /// have gone along it longer or shorter, and as loud as their patterns are in its directions.
+    pub(crate) fn carried(&self, path: &CriticalPath, ends: [[&Pose; 2]; 2]) -> CriticalPath {
+        let directions = [path.departure_rad, path.arrival_rad];
+        let gone_m = |end: usize| {
+            let [then, now] = ends[end].map(|pose| pose.translation.vector);
+            let towards = Vector::new(libm::cos(directions[end]), libm::sin(directions[end]));
+            (now - then).dot(&towards) * libm::cos(path.elevations_rad[end])
+        };
+        let length_m = (path.length_m - gone_m(0) - gone_m(1)).max(0.5 * path.length_m);
+        let mut patterns = path.amplitude;
+        if ends.iter().any(|[then, now]| then.rotation != now.rotation) {
+            let of = |end: usize| {
+                let off_rad = directions[end] - ends[end][1].rotation.angle();
+                self.patterns[end].pattern(raised(off_rad, path.elevations_rad[end]))
+            };
+            let least = if path.order == 0 { self.coupling } else { 0.0 };
+            patterns = path.bare * (of(0) * of(1)).max(least);
+        }
+        CriticalPath { length_m, amplitude: patterns * path.length_m / length_m, ..*path }
     }
 }
 

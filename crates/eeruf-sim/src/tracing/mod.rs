@@ -19,6 +19,7 @@ mod tracer;
 mod vertical;
 mod write;
 
+pub(crate) use crosstalk::Moved;
 pub use crosstalk::{CriticalPath, CrosstalkMatrix, CrosstalkQuery};
 pub use error::PathsError;
 pub(crate) use limits::Matters;

@@ -4,6 +4,7 @@
 mod bodies;
 mod hearing_range;
 mod path_numbers;
+mod shared;
 
 use std::sync::Arc;
 
@@ -15,12 +16,14 @@ use crate::{
     results::{HeardPath, SensorId},
     scene::{Bounce, Scene},
     threads::Stop,
-    tracing::{CriticalPath, CrosstalkMatrix, CrosstalkQuery, Limits, Matters, PathsError, Tracer, reception_at},
+    tracing::{CriticalPath, CrosstalkMatrix, CrosstalkQuery, Limits, Matters, Moved, PathsError, Tracer, reception_at},
     world::{Robot, World, offset},
 };
 pub(super) use bodies::Bodies;
 use hearing_range::HearingRange;
 use path_numbers::PathNumbers;
+pub(crate) use shared::SharedPaths;
+use shared::Snapshot;
 
 /// One path from an emitter to a receiver, as the event loop needs it.
 #[derive(Clone, Copy, Debug)]
@@ -77,6 +80,8 @@ pub(crate) struct Channels {
     starts: Vec<usize>,
     /// Every path met so far.
     paths: PathNumbers,
+    /// Paths of this scene that other simulations have met, if they are shared.
+    shared: Option<Arc<SharedPaths>>,
     // Kept between firings for their memory.
     poses: Vec<Pose>,
     velocities: Vec<Vector>,
@@ -108,6 +113,7 @@ impl Channels {
             channels: Vec::new(),
             starts: Vec::new(),
             paths: PathNumbers::default(),
+            shared: None,
             poses: Vec::new(),
             velocities: Vec::new(),
             robots: Vec::new(),
@@ -176,6 +182,11 @@ impl Channels {
         heard.min().unwrap_or(NEVER)
     }
 
+    /// Shares the paths of the present scene with other simulations, as long as it does not change.
+    pub(crate) fn share(&mut self, shared: Arc<SharedPaths>) {
+        self.shared = Some(shared);
+    }
+
     /// Every path met so far, by its number.
     pub(crate) fn paths(&self) -> &[HeardPath] {
         self.paths.paths()
@@ -195,6 +206,7 @@ impl Channels {
     /// If there are none to be found, everything stays as it is.
     pub(crate) fn change_scene(&mut self, world: Arc<World>, kinematics: &impl Kinematics) -> Result<(), PathsError> {
         let before = core::mem::replace(&mut self.world, world);
+        self.shared = None;
         let changed = self.begin_anew(kinematics);
         if changed.is_err() {
             self.world = before;
@@ -249,10 +261,45 @@ impl Channels {
             (0..self.ids.len()).filter(|&sensor| self.listens[usize::from(self.ids[sensor].robot)]).collect();
         let mut channels = core::mem::take(&mut self.channels);
         channels.clear();
-        let traced = self
-            .trace(&[emitter], &listening, matters.map(|matters| (now, matters)), |_, channel| channels.push(channel));
+        let matters = matters.map(|matters| (now, matters));
+        let found = |_, channel| channels.push(channel);
+        let traced = match self.shared.clone() {
+            Some(shared) => self.trace_shared(&shared, (now, kinematics), emitter, &listening, matters, found),
+            None => self.trace(&[emitter], &listening, matters, found),
+        };
         self.channels = channels;
         traced
+    }
+
+    /// Looks for the channels from an emitter as [`trace`](Self::trace) does, but along the paths that there were at the
+    /// nearest instant at which they are shared.
+    fn trace_shared(
+        &mut self,
+        shared: &SharedPaths,
+        (now, kinematics): (u64, &impl Kinematics),
+        emitter: usize,
+        receivers: &[usize],
+        matters: Option<(u64, Arrives<'_>)>,
+        mut found: impl FnMut(usize, Channel),
+    ) -> Result<(), PathsError> {
+        let at = shared.instant(now);
+        let snapshot = match shared.get(at, emitter) {
+            Some(known) => known,
+            None => {
+                self.set_poses(at, kinematics);
+                let mut snapshot = Snapshot { poses: self.poses.clone(), groups: vec![] };
+                for listeners in self.hearing(emitter, receivers) {
+                    self.search(&[emitter], &listeners, None)?;
+                    snapshot.groups.push((listeners, self.matrix.clone()));
+                }
+                self.set_poses(now, kinematics);
+                shared.put(at, emitter, snapshot)
+            }
+        };
+        for (listeners, matrix) in &snapshot.groups {
+            self.hand_out(&[emitter], listeners, matrix, Some(&snapshot.poses), matters, &mut found);
+        }
+        Ok(())
     }
 
     /// Sensors of one kind together, those of robots with a body or a mounting that carries sound each on their own.
@@ -307,66 +354,123 @@ impl Channels {
         mut found: impl FnMut(usize, Channel),
     ) -> Result<(), PathsError> {
         let Some(&first) = emitters.first() else { return Ok(()) };
-        let (world, sending) = (&*Arc::clone(&self.world), &self.transducer_of(first));
-        let hearing: Vec<_> =
-            receivers.iter().copied().filter(|&sensor| self.transducer_of(sensor).hears(sending)).collect();
-        let sources = self.poses_of(emitters);
-        for listeners in self.alike(&hearing) {
-            let transducer = &self.transducer_of(listeners[0]);
-            let sensors = self.poses_of(&listeners);
-            let range = self.range(sending, transducer);
-            let mut furnished = None;
-            if self.bodies.any() {
-                let without = [self.embodied(first), self.embodied(listeners[0])];
-                let both = [&sources[..], &sensors].concat();
-                furnished = self.bodies.scene(world, &self.robots, &both, without)?;
-            }
-            let scene = furnished.as_ref().map_or(world.scene(), |furnished| &furnished.scene);
-            let limits = Limits { max_order: world.max_order(), max_length_m: range.longest_m };
-            self.tracer.pole_order = world.pole_order();
-            self.tracer.follow(&world.physics());
-            // A body shades whatever the physics.
-            self.tracer.pole_shadows |= furnished.is_some();
-            // The receiver's gain depends on when the receiver fired, so it cannot be applied here.
-            let flat = Transducer { gain: GainProfile::Constant, ..*transducer };
-            let on_one = self.coupled(first).filter(|&robot| self.coupled(listeners[0]) == Some(robot));
-            let coupling = on_one.map_or(0.0, |robot| self.world.robots()[robot].coupling());
-            let query = CrosstalkQuery::new(scene, &sensors, &flat, limits, range.faintest);
-            let heights_m = [emitters, &listeners].map(|sensors| self.heights_of(scene, sensors));
-            let query = CrosstalkQuery { coupling, heights_m: heights_m.each_ref().map(Vec::as_slice), ..query };
-            let c = world.scene().air().speed_of_sound();
-            // A receiver that moves is reached this share of the time earlier or later at most.
-            let slack_of = |&sensor: &usize| {
-                let speed = self.velocities[sensor].norm();
-                (sensor, speed / (c - speed))
-            };
-            let slacks: Vec<(usize, f64)> = listeners.iter().map(slack_of).collect();
-            let by_length = matters.map(|(now, arrives)| {
-                let slacks = &slacks;
-                move |listener: usize, length_m: f64| {
-                    let Some(&(sensor, slack)) = slacks.get(listener) else { return true };
-                    let time_s = length_m / c;
-                    let slack_s = time_s * slack;
-                    !(slack_s >= 0.0) || arrives(sensor, now + (time_s * 1e9) as u64, (slack_s * 1e9) as u64 + 2)
-                }
-            });
-            let by_length = by_length.as_ref().map(|by_length| by_length as Matters<'_>);
-            self.matrix.compute_what_matters(&sources, sending, &mut self.tracer, &query, by_length)?;
+        for listeners in self.hearing(first, receivers) {
+            self.search(emitters, &listeners, matters)?;
             let matrix = core::mem::take(&mut self.matrix);
-            for path in matrix.paths() {
-                let ends = [emitters[path.emitter as usize], listeners[path.receiver as usize]];
-                self.bounces.clear();
-                self.bounces.extend_from_slice(matrix.bounces(path));
-                if let Some(furnished) = &furnished {
-                    furnished.number(&mut self.bounces);
-                }
-                if let Some(channel) = self.channel(ends, path, &range) {
-                    found(ends[0], channel);
-                }
-            }
+            self.hand_out(emitters, &listeners, &matrix, None, None, &mut found);
             self.matrix = matrix;
         }
         Ok(())
+    }
+
+    /// The receivers that hear an emitter, by kinds.
+    fn hearing(&self, emitter: usize, receivers: &[usize]) -> Vec<Vec<usize>> {
+        let sending = self.transducer_of(emitter);
+        let hears = |&sensor: &usize| self.transducer_of(sensor).hears(&sending);
+        self.alike(&receivers.iter().copied().filter(hears).collect::<Vec<_>>())
+    }
+
+    /// Searches for the paths from emitters that are alike to listeners that are alike, into `self.matrix`.
+    fn search(
+        &mut self,
+        emitters: &[usize],
+        listeners: &[usize],
+        matters: Option<(u64, Arrives<'_>)>,
+    ) -> Result<(), PathsError> {
+        let (Some(&first), Some(&hears)) = (emitters.first(), listeners.first()) else { return Ok(()) };
+        let (world, sending) = (&*Arc::clone(&self.world), &self.transducer_of(first));
+        let transducer = &self.transducer_of(hears);
+        let (sources, sensors) = (self.poses_of(emitters), self.poses_of(listeners));
+        let range = self.range(sending, transducer);
+        let mut furnished = None;
+        if self.bodies.any() {
+            let without = [self.embodied(first), self.embodied(hears)];
+            let both = [&sources[..], &sensors].concat();
+            furnished = self.bodies.scene(world, &self.robots, &both, without)?;
+        }
+        let scene = furnished.as_ref().map_or(world.scene(), |furnished| &furnished.scene);
+        let limits = Limits { max_order: world.max_order(), max_length_m: range.longest_m };
+        self.tracer.pole_order = world.pole_order();
+        self.tracer.follow(&world.physics());
+        // A body shades whatever the physics.
+        self.tracer.pole_shadows |= furnished.is_some();
+        // The receiver's gain depends on when the receiver fired, so it cannot be applied here.
+        let flat = Transducer { gain: GainProfile::Constant, ..*transducer };
+        let query = CrosstalkQuery::new(scene, &sensors, &flat, limits, range.faintest);
+        let heights_m = [emitters, listeners].map(|sensors| self.heights_of(scene, sensors));
+        let coupling = self.coupling(first, hears);
+        let query = CrosstalkQuery { coupling, heights_m: heights_m.each_ref().map(Vec::as_slice), ..query };
+        let by_length = matters.map(|matters| self.by_length(listeners, matters));
+        let by_length = by_length.as_ref().map(|by_length| by_length as Matters<'_>);
+        self.matrix.compute_what_matters(&sources, sending, &mut self.tracer, &query, by_length)?;
+        if let Some(furnished) = &furnished {
+            furnished.number(self.matrix.bounces_mut());
+        }
+        Ok(())
+    }
+
+    /// Returns whether sound matters to one of the listeners after a path of a length.
+    fn by_length<'a>(&self, listeners: &[usize], (now, arrives): (u64, Arrives<'a>)) -> impl Fn(usize, f64) -> bool + 'a {
+        let c = self.world.scene().air().speed_of_sound();
+        // A receiver that moves is reached this share of the time earlier or later at most.
+        let slack_of = |&sensor: &usize| {
+            let speed = self.velocities[sensor].norm();
+            (sensor, speed / (c - speed))
+        };
+        let slacks: Vec<(usize, f64)> = listeners.iter().map(slack_of).collect();
+        move |listener, length_m| {
+            let Some(&(sensor, slack)) = slacks.get(listener) else { return true };
+            let time_s = length_m / c;
+            let slack_s = time_s * slack;
+            !(slack_s >= 0.0) || arrives(sensor, now + (time_s * 1e9) as u64, (slack_s * 1e9) as u64 + 2)
+        }
+    }
+
+    /// The amplitude that the mounting carries from one sensor to another.
+    fn coupling(&self, emitter: usize, receiver: usize) -> f64 {
+        let on_one = self.coupled(emitter).filter(|&robot| self.coupled(receiver) == Some(robot));
+        on_one.map_or(0.0, |robot| self.world.robots()[robot].coupling())
+    }
+
+    /// Hands out the channels of paths; those that were found when the sensors stood elsewhere as they are now, if they
+    /// matter.
+    fn hand_out(
+        &mut self,
+        emitters: &[usize],
+        listeners: &[usize],
+        matrix: &CrosstalkMatrix,
+        found_at: Option<&[Pose]>,
+        matters: Option<(u64, Arrives<'_>)>,
+        found: &mut impl FnMut(usize, Channel),
+    ) {
+        let (Some(&first), Some(&hears)) = (emitters.first(), listeners.first()) else { return };
+        let [sending, hearing] = [first, hears].map(|sensor| self.transducer_of(sensor));
+        let range = self.range(&sending, &hearing);
+        let by_length = matters.map(|matters| self.by_length(listeners, matters));
+        let moved = found_at.filter(|found_at| **found_at != *self.poses).map(|found_at| {
+            let air = self.world.scene().air();
+            let arriving = Transducer { frequency_hz: sending.frequency_hz, ..hearing }.piston(air);
+            let coupling = self.coupling(first, hears);
+            (found_at, Moved { patterns: [sending.piston(air), arriving], coupling })
+        });
+        for path in matrix.paths() {
+            let ends = [emitters[path.emitter as usize], listeners[path.receiver as usize]];
+            let mut path = *path;
+            if let Some((found_at, moved)) = &moved {
+                path = moved.carried(&path, ends.map(|end| [&found_at[end], &self.poses[end]]));
+            }
+            if found_at.is_some()
+                && (by_length.as_ref().is_some_and(|by_length| !by_length(path.receiver as usize, path.length_m))
+                    || path.amplitude < range.faintest)
+            {
+                continue;
+            }
+            self.bounces.clear();
+            self.bounces.extend_from_slice(matrix.bounces(&path));
+            if let Some(channel) = self.channel(ends, &path, &range) {
+                found(ends[0], channel);
+            }
+        }
     }
 
     /// The heights of sensors, where they matter.

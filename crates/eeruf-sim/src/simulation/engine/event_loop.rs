@@ -14,7 +14,7 @@ use super::filter::FiredReading;
 use super::own::Own;
 use super::recorder::Recorder;
 use super::running_ring::{Plan, RunningRing, expected_change_us, plans, start_all};
-use crate::simulation::channels::{Arrives, Channels};
+use crate::simulation::channels::{Arrives, Channels, SharedPaths};
 use crate::simulation::error::SimulationError;
 use crate::simulation::kinematics::Kinematics;
 use crate::simulation::options::Options;
@@ -264,6 +264,11 @@ impl<K: Kinematics> EventLoop<K> {
         changed.map_err(|error| SimulationError::paths(now, error))?;
         self.c = c;
         Ok(())
+    }
+
+    /// Shares the paths of the present scene with other simulations.
+    pub(crate) fn share(&mut self, shared: Arc<SharedPaths>) {
+        self.channels.share(shared);
     }
 
     /// A robot's ring changes to another schedule, of as many sensors, when its period ends.

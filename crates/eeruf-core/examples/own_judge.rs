@@ -10,7 +10,7 @@ use eeruf_core::{EchoFilter, Instant, Micros, ReadingKind, Ring, RingConfig, Rin
 /// Nearer than about a metre.
 const NEAR: Micros = Micros::from_millis(6);
 
-/// The filter, and what it makes of near echoes.
+/// The filter, with a warning for near echoes that it has not confirmed.
 struct Wary(EchoFilter<12>);
 
 impl Judge for Wary {

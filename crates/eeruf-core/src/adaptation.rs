@@ -1,5 +1,5 @@
-//! Adaptive scheduling (end of Sec. 3.1): fire more slowly where too much is rejected, and faster again when it is
-//! calm.
+//! Adaptive scheduling (end of Sec. 3.1): fire more slowly if too many readings are rejected, and faster again once few
+//! are.
 
 use core::ops::Deref;
 
@@ -10,11 +10,11 @@ use crate::sound::SpeedOfSound;
 use crate::time::Micros;
 use crate::verified::VerifiedSchedule;
 
-/// Watches the rejection rate over windows of some periods, and says when to change to another schedule of a
-/// *ladder*: verified schedules for one ring, from the shortest period to the longest.
+/// Watches the rejection rate over windows of some periods, and says when to change to another schedule of a *ladder*:
+/// verified schedules for one ring, from the shortest period to the longest.
 ///
-/// One noisy window moves one rung up, to a longer period; only several calm windows running move one rung down. Give
-/// it the [`PeriodStats`] of a [`Ring`](crate::Ring) that began with the shortest period, and the ring's
+/// One noisy window moves one rung up, to a longer period; only several consecutive calm windows move one rung down.
+/// Give it the [`PeriodStats`] of a [`Ring`](crate::Ring) that began with the shortest period, and the ring's
 /// [`change_schedule`](crate::Ring::change_schedule):
 ///
 /// ```
@@ -39,8 +39,8 @@ pub type Adaptation<'s, R> = OnLadder<&'s [R]>;
 pub struct OnLadder<L> {
     rungs: L,
     rung: usize,
-    /// Above this rejection rate, in thousandths, it fires more slowly. Default: 300, a choice of ours; the paper names
-    /// none.
+    /// Rejection rate, in thousandths, above which the ring fires more slowly. Default: 300, a choice of ours; the
+    /// paper names none.
     pub noisy_permille: u16,
     /// Largest rejection rate of a calm window, in thousandths. Default: 100.
     pub calm_permille: u16,
@@ -55,8 +55,8 @@ pub struct OnLadder<L> {
 }
 
 impl<L: Deref<Target = [VerifiedSchedule<K, M, U>]>, const K: usize, const M: usize, U> OnLadder<L> {
-    /// Starts on the lowest of these rungs, the shortest period. Each was verified for itself; a ring changes only to
-    /// those that allow its own `t_delta` and window.
+    /// Starts on the lowest of these rungs, the shortest period. Each rung was verified by itself; a ring changes only
+    /// to those that allow its own `t_delta` and window.
     ///
     /// # Errors
     /// [`ScheduleError`] if there is no rung, if a period is not longer than the one before, or if the number of
@@ -73,9 +73,8 @@ impl<L: Deref<Target = [VerifiedSchedule<K, M, U>]>, const K: usize, const M: us
 }
 
 impl<'s, R> Adaptation<'s, R> {
-    /// Takes in one period, and asks for `change` to another schedule when the present one should be left. It stays on
-    /// its rung unless the change succeeds, and asks again after the next window that calls for one. Returns whether
-    /// there was a change.
+    /// Records one period, and calls `change` when another schedule is better. If the change fails, it stays on its
+    /// rung and tries again after the next window that calls for a change. Returns true if the schedule changed.
     ///
     /// # Errors
     /// Whatever `change` returns.
@@ -90,7 +89,7 @@ impl<'s, R> Adaptation<'s, R> {
 }
 
 impl<L: Deref<Target = [R]>, R> OnLadder<L> {
-    /// `needs` says how many sensors a rung has, and its period.
+    /// Number of sensors and period of a rung, as `needs` gives them.
     fn of(rungs: L, needs: impl Fn(&R) -> (usize, Micros)) -> Result<Self, ScheduleError> {
         let Some((expected, _)) = rungs.first().map(&needs) else { return Err(ScheduleError::NoRung) };
         let mut before = None;
@@ -204,7 +203,7 @@ mod tests {
         PeriodStats { period: 0, phase: Phase::A, tally, max_late: Micros::ZERO, sum_late: Micros::ZERO }
     }
 
-    /// The periods after which the schedule changes, and its new period in ms.
+    /// Periods after which the schedule changes, with the new period in ms.
     fn changes(
         adaptation: &mut Adaptation<'_, VerifiedSchedule<12>>,
         stats: PeriodStats,

@@ -116,7 +116,7 @@ macro_rules! schedule {
     };
 }
 
-/// For `schedule!` with `each_meets`.
+/// Implementation of `schedule!` with `each_meets`.
 #[doc(hidden)]
 pub const fn __checked_each<const K: usize>(
     schedule: Result<Schedule<K>, ScheduleError>,
@@ -130,7 +130,7 @@ pub const fn __checked_each<const K: usize>(
     }
 }
 
-/// For `schedule!`, which evaluates it when the program is compiled: its panics are compile errors.
+/// Implementation of `schedule!`, evaluated when the program is compiled: its panics are compile errors.
 #[doc(hidden)]
 pub const fn __checked<const K: usize>(
     schedule: Result<Schedule<K>, ScheduleError>,
@@ -159,7 +159,7 @@ const fn refuse(violation: Violation) -> ! {
     }
 }
 
-/// For `schedule!`.
+/// Microseconds in an expansion of `schedule!`.
 #[doc(hidden)]
 pub const fn __micros<const K: usize>(us: [u32; K]) -> [Micros; K] {
     let mut times = [Micros::ZERO; K];

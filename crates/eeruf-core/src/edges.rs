@@ -1,4 +1,4 @@
-//! [`EdgeQueue`]: from the edge interrupt, which only time-stamps, to the main loop, which thinks.
+//! [`EdgeQueue`]: hands edges from the interrupt, which only time-stamps them, to the main loop.
 
 use core::sync::atomic::{AtomicU8, AtomicU16, Ordering};
 
@@ -12,7 +12,7 @@ pub struct Edge {
     pub sensor: u8,
     /// True if the line rose.
     pub high: bool,
-    /// When.
+    /// Time of the edge.
     pub at: Instant,
 }
 
@@ -31,11 +31,11 @@ pub struct Edge {
 /// ```
 #[derive(Debug)]
 pub struct EdgeQueue<const N: usize> {
-    /// When: the low and the high half.
+    /// Times of the edges: low and high half.
     at: [[AtomicU16; 2]; N],
-    /// The sensor, and in the highest bit whether its line rose.
+    /// Sensor of each edge; the highest bit is set if the line rose.
     line: [AtomicU8; N],
-    /// Number of edges that were ever pushed, and how many popped; both wrap.
+    /// Total number of edges pushed, and of edges popped; both wrap.
     pushed: AtomicU8,
     popped: AtomicU8,
     lost: AtomicU8,
@@ -56,7 +56,7 @@ impl<const N: usize> EdgeQueue<N> {
         }
     }
 
-    /// Takes in an edge; if the queue is full the edge is [lost](Self::lost). Call it from one interrupt priority only.
+    /// Adds an edge; if the queue is full the edge is [lost](Self::lost). Call it from one interrupt priority only.
     #[inline]
     pub fn push(&self, edge: Edge) {
         let pushed = self.pushed.load(Ordering::Relaxed);
@@ -94,12 +94,12 @@ impl<const N: usize> EdgeQueue<N> {
         Some(Edge { sensor: line & !HIGH, high: line & HIGH != 0, at })
     }
 
-    /// Returns true if nothing waits; ask with interrupts off before going to sleep.
+    /// Returns true if no edge waits; call it with interrupts off before going to sleep.
     pub fn is_empty(&self) -> bool {
         self.popped.load(Ordering::Relaxed) == self.pushed.load(Ordering::Relaxed)
     }
 
-    /// Number of edges that found the queue full. It wraps at 256, so that it never stops telling: look at least once a
+    /// Number of edges that found the queue full. The count wraps at 256 instead of stopping: read it at least once a
     /// period, and take the difference.
     pub fn lost(&self) -> u8 {
         self.lost.load(Ordering::Relaxed)

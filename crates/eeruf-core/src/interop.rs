@@ -42,7 +42,7 @@ impl From<Micros> for embassy_time::Duration {
     }
 }
 
-/// More than [`Micros::MAX`] is [`Micros::MAX`].
+/// Conversion that saturates at [`Micros::MAX`].
 #[cfg(feature = "embassy-time")]
 impl From<embassy_time::Duration> for Micros {
     fn from(duration: embassy_time::Duration) -> Self {
@@ -50,7 +50,7 @@ impl From<embassy_time::Duration> for Micros {
     }
 }
 
-/// The low 32 bits of a clock of 64.
+/// Conversion that keeps the low 32 bits of the 64-bit clock.
 #[cfg(feature = "embassy-time")]
 impl From<embassy_time::Instant> for Instant {
     fn from(instant: embassy_time::Instant) -> Self {
@@ -60,7 +60,7 @@ impl From<embassy_time::Instant> for Instant {
 
 #[cfg(feature = "embassy-time")]
 impl Instant {
-    /// The instant of embassy's clock that is nearest to `now` on it.
+    /// The instant of embassy's 64-bit clock for an [`Instant`], the one nearest to `now`.
     pub fn to_embassy(self, now: embassy_time::Instant) -> embassy_time::Instant {
         embassy_time::Instant::from_micros(self.to_wide(now.as_micros()))
     }
@@ -72,8 +72,7 @@ impl From<Micros> for Duration {
     }
 }
 
-/// Whole microseconds; what is left of one is cut off. More than [`Micros::MAX`], which is longer than any window or
-/// period may be, is [`Micros::MAX`].
+/// Conversion to whole microseconds, rounded down; above [`Micros::MAX`], longer than any window or period, it is that.
 impl From<Duration> for Micros {
     fn from(duration: Duration) -> Self {
         Self::new(u32::try_from(duration.as_micros()).unwrap_or(u32::MAX))

@@ -1,10 +1,10 @@
-//! [`Judge`]: what a ring asks of whatever decides what a reading is worth.
+//! [`Judge`]: the interface between a ring and the code that decides which readings to accept.
 
 use crate::reading::{Explanation, ReadingKind, Verdict};
 use crate::schedule::Phase;
 use crate::time::{Instant, Micros};
 
-/// A firing as a plan tells it to a judge.
+/// The context of a firing that a plan gives to a judge.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct FiringContext {
@@ -16,7 +16,7 @@ pub struct FiringContext {
 }
 
 impl FiringContext {
-    /// A firing in this phase, of a robot that stands.
+    /// The context of a firing in this phase, for a robot that stands.
     pub const fn new(phase: Phase) -> Self {
         Self { phase, expected_change_us: 0 }
     }
@@ -29,13 +29,13 @@ pub struct Heard<'r> {
     pub sensor: u8,
     /// Time when it fired.
     pub fired: Instant,
-    /// Time since its firing before; of no account where that was forgotten.
+    /// Time since its firing before; meaningless if that was forgotten.
     pub since_before: Micros,
-    /// The echo times, earliest first; none for silence.
+    /// The echo times, earliest first; empty for silence.
     pub echoes: &'r [Micros],
-    /// Properties of the firing, by the plan, and the change that odometry expects.
+    /// The context of the firing, from the plan, with the change that odometry expects.
     pub firing: FiringContext,
-    /// `T_delta` of this sensor now: the ring's, or less where the plan allows the sensor less.
+    /// `T_delta` of this sensor now: the ring's, or less if the plan allows the sensor less.
     pub t_delta: Micros,
 }
 
@@ -54,7 +54,7 @@ impl Heard<'_> {
 pub(crate) struct Age(u16);
 
 impl Age {
-    /// None was ever accepted.
+    /// Age of a sensor none of whose readings was ever accepted.
     pub(crate) const NEVER: Self = Self(u16::MAX);
 
     pub(crate) fn get(self) -> Option<u16> {
@@ -72,18 +72,18 @@ impl Age {
     }
 }
 
-/// The answer to what explains readings that agree. No `Option`, so that what is not known cannot pass for "nothing".
+/// The explanation of readings that agree. Not an `Option`, so that unknown history cannot pass for "nothing".
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[must_use]
 pub enum Explained {
-    /// Readings that no firing explains.
+    /// No firing explains the readings.
     ByNothing,
     /// This firing explains them, or a forgotten one may.
     By(Explanation),
 }
 
 impl Explained {
-    /// The reason why they are [`Ambiguous`](ReadingKind::Ambiguous), if they are.
+    /// The reason why the readings are [`Ambiguous`](ReadingKind::Ambiguous), if they are.
     pub const fn reason(self) -> Option<Explanation> {
         match self {
             Self::ByNothing => None,
@@ -92,30 +92,30 @@ impl Explained {
     }
 }
 
-/// A ring's knowledge of the sounds that a sensor may have heard. A judge that asks is not compiled in a ring that
-/// remembers fewer firings of each sensor than it asks about.
+/// A ring's knowledge of the sounds that a sensor may have heard. If the ring remembers fewer firings than a judge asks
+/// about, the program does not compile.
 pub trait Sounds {
-    /// The firing whose sound could be both the echo that the sensor heard `first` after the firing before its last one
-    /// and the one that it heard `second` after its last, by a path that changes by no more than P in between.
+    /// The firing whose sound could be both the echo heard `first` after the sensor's last firing but one and the echo
+    /// heard `second` after its last firing, along a path that changes by at most P in between.
     fn explain(&self, first: Micros, second: Micros) -> Explained;
-    /// Asks like [`explain`](Self::explain), for paths that change by up to `more` than P.
+    /// Returns the explanation like [`explain`](Self::explain), for paths that change by up to `more` than P.
     fn explain_moving(&self, first: Micros, second: Micros, more: Micros) -> Explained {
         self.explain_after(1, first, second, more)
     }
-    /// Asks like [`explain_moving`](Self::explain_moving), with the `first` echo after the firing that came `ago`
-    /// firings before the sensor's last one.
+    /// Returns the explanation like [`explain_moving`](Self::explain_moving), with the `first` echo after the firing
+    /// `ago` firings before the sensor's last one.
     fn explain_after(&self, ago: u8, first: Micros, second: Micros, more: Micros) -> Explained;
-    /// Returns true if sound of any firing but the sensor's last could be the echo that it heard after that one.
+    /// Returns true if sound of any firing except the sensor's last could be the echo that it heard after that one.
     fn is_masked(&self, t_echo: Micros) -> bool;
 }
 
-/// The quiet that a sensor needs, by a judge's word.
+/// A judge's demand for quiet around a sensor's firing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Quiet {
-    /// The last reading was believed: less will do.
+    /// The last reading was believed, so less quiet will do.
     Less,
-    /// Quiet as before.
+    /// The same quiet as before.
     Same,
     /// The last reading may be another firing's sound.
     More,
@@ -125,9 +125,9 @@ pub enum Quiet {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Pace {
-    /// Readings may change, since the robot moves.
+    /// True if the robot moves, so that readings may change.
     pub moves: bool,
-    /// Every echo is reported, so that each needs more quiet.
+    /// True if every echo is reported, so that each needs more quiet.
     pub every_echo: bool,
 }
 
@@ -136,7 +136,7 @@ impl Pace {
     pub const STANDING: Self = Self { moves: false, every_echo: false };
 }
 
-/// A source of no sound, for readings that no ring has fired.
+/// A source of no sound, for readings that no ring fired.
 #[derive(Clone, Copy, Debug)]
 pub struct NoSounds;
 
@@ -154,31 +154,33 @@ impl Sounds for NoSounds {
     }
 }
 
-/// Decides what the readings of a [`Ring`](crate::Ring) are worth: [`EchoFilter`](crate::EchoFilter),
+/// Decides which readings of a [`Ring`](crate::Ring) to accept: [`EchoFilter`](crate::EchoFilter),
 /// [`Belief`](crate::flow::Belief), [`MOfN`](crate::judge::MOfN), [`Agreement`],
 /// [`MedianFilter`](crate::judge::MedianFilter), or one of the caller's own.
 ///
-/// The ring hands in sensors that it has room for. A judge that has room for fewer accepts nothing of the others.
+/// The ring passes every sensor that it has room for. A judge with room for fewer sensors accepts nothing from the
+/// others.
 pub trait Judge {
-    /// `T_delta`: what counts as near-identical.
+    /// `T_delta`: the greatest difference of near-identical readings.
     fn t_delta(&self) -> Micros;
-    /// Judges a firing. `sounds` say what explains readings that agree: a judge that accepts them all the same accepts
-    /// crosstalk.
+    /// Judges a firing. `sounds` tells which firings explain readings that agree: a judge that accepts explained
+    /// readings accepts crosstalk.
     fn judge(&mut self, heard: &Heard<'_>, sounds: &impl Sounds) -> Verdict;
-    /// Takes in a firing that says nothing about the echo time: stuck, too early, late, or silence without a witness.
+    /// Handles a firing without information about the echo time: stuck, too early, late, or silence without a witness.
     /// `echoes` holds the early edge, if there was one.
     fn skip(&mut self, heard: &Heard<'_>, kind: ReadingKind) -> Verdict;
-    /// Takes in a firing whose sensor still holds its line as one without an echo that is no silence yet. A run of
-    /// silences goes on, and what it hears next is compared with no echo. By default the run ends.
+    /// Handles a firing whose sensor still holds its line: it has no echo, but is not silence yet. A run of silences
+    /// goes on, and the next reading is compared with no echo. By default the run ends.
     fn hold(&mut self, heard: &Heard<'_>) {
         self.skip(heard, ReadingKind::NoEcho);
     }
-    /// Firings of a sensor since its last accepted reading; `None` if none ever was.
+    /// Number of firings of a sensor since its last accepted reading; `None` if none ever was.
     fn age(&self, sensor: u8) -> Option<u16>;
-    /// Returns true if it believes now that nothing is in a sensor's range: what its last reading heard is none of its
-    /// own.
+    /// Returns true if the judge believes that nothing is in a sensor's range, so that what its last reading heard is
+    /// foreign.
     fn is_clear(&self, sensor: u8) -> bool;
-    /// The echo time that it believes of a sensor now; `None` if it believes none, or that nothing is in range.
+    /// The echo time that the judge believes of a sensor; `None` if it believes none, or believes that nothing is in
+    /// range.
     fn believed(&self, _sensor: u8) -> Option<Micros> {
         None
     }
@@ -187,31 +189,32 @@ pub trait Judge {
     fn stands_for(&self, _sensor: u8) -> u8 {
         0
     }
-    /// The robot moves at this speed and turns at this rate from `now` on.
+    /// Reports the robot's speed and rate of turn from `now` on.
     fn moving(&mut self, _speed_mm_s: u32, _turn_mrad_s: u32, _now: Instant) {}
-    /// The robot's motion as of the last reading, or word of it.
+    /// The robot's motion as of the last reading or report.
     fn pace(&self) -> Pace {
         Pace::STANDING
     }
-    /// The quiet that a sensor needs after its reading, which was the last of all, for plans that give quiet by it.
+    /// The quiet that a sensor needs after its reading, the latest of all, for plans that depend on it.
     fn quiet(&self) -> Quiet {
         Quiet::Same
     }
-    /// Forgets the readings of a sensor, so that its next one is compared with nothing. The age goes on.
+    /// Forgets the readings of a sensor, so that its next one is compared with nothing. The age keeps counting.
     fn forget(&mut self, sensor: u8);
-    /// The ring goes on after a pause, and with it a sensor: its next reading is compared with no other.
+    /// Resumes a sensor after a pause of the ring: its next reading is compared with no other.
     fn resume(&mut self, sensor: u8) {
         self.forget(sensor);
     }
-    /// The ring starts over: sound from before may still be heard, and what a sensor hears next is compared with
-    /// nothing. Ages go on.
+    /// Restarts the judge with the ring: sound from before may still be heard, and each sensor's next reading is
+    /// compared with nothing. Ages keep counting.
     fn restart(&mut self);
-    /// A sensor's last firing, which is judged already, was this much later than it seemed; negative for earlier.
+    /// Corrects a sensor's last firing, which is judged already: it was this much later than assumed; negative for
+    /// earlier.
     fn fired_later(&mut self, _sensor: u8, _later_us: i32) {}
 }
 
-/// A judge that does not ask what explains a reading: agreement alone, for baselines, without any promise about foreign
-/// sound. Where crosstalk repeats, as with constant waits, it is accepted.
+/// A judge that ignores explanations and accepts agreement alone, for baselines, without any promise about foreign
+/// sound. It accepts crosstalk that repeats, as with constant waits.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Agreement<J>(pub J);

@@ -13,7 +13,7 @@ use crate::schedule::MAX_SENSORS;
 pub enum Layout<'a> {
     /// A row with two ends (the paper's half ring): neighbours differ by less than this number.
     Line(u8),
-    /// A closed ring: as a line, but the last sensor stands next to the first.
+    /// A closed ring: like a line, but the last sensor stands next to the first.
     Ring(u8),
     /// Groups of this many adjacent sensors; only members of one group are neighbours.
     Blocks(u8),
@@ -25,8 +25,8 @@ pub enum Layout<'a> {
 /// The rows of a [`Layout::Graph`] whose neighbours are these pairs of sensors, counted from 0.
 ///
 /// # Errors
-/// [`RequirementsError`] for the first pair that names one sensor twice, or one out of range: a layout that was meant
-/// for another ring would keep fewer sensors apart than it says.
+/// [`RequirementsError`] for the first pair that names one sensor twice, or one out of range: a layout for another ring
+/// would keep fewer sensors apart than it seems to.
 ///
 /// ```
 /// use eeruf_core::{Layout, conditions::neighbour_rows};
@@ -54,7 +54,7 @@ pub fn neighbour_rows(
 }
 
 impl Layout<'_> {
-    /// Returns true if all neighbours that a graph names are among `sensors`.
+    /// Checks that all neighbours that a graph names are among `sensors`.
     ///
     /// # Errors
     /// [`RequirementsError`] for the first that is not.

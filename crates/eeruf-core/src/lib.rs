@@ -115,14 +115,14 @@ pub mod conditions {
     pub use crate::verify::{Verification, Violation, ViolationKind};
 }
 
-/// The proofs: `docs/explanation/theory.md`, for reading here.
+/// The proofs: `docs/explanation/theory.md`.
 ///
 /// The file in this crate is a link to it, so that a packed crate holds the text too.
 #[cfg(doc)]
 #[doc = include_str!("../theory.md")]
 pub mod theory {}
 
-/// The listing of the crate's README compiles and holds.
+/// Doctest of the crate's README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -1,4 +1,5 @@
-//! Needs of one sensor or one pair, by [`Requirements`], whether all are alike or not.
+//! Needs of one sensor or one pair according to [`Requirements`], for rings with and without [`Uneven`](crate::Uneven)
+//! sensors.
 
 use crate::requirements::Requirements;
 use crate::time::{Micros, longer, shorter};
@@ -21,7 +22,7 @@ impl Requirements<'_> {
         }
     }
 
-    /// Least time between two triggers of a sensor; its window where nothing else is given.
+    /// Least time between two triggers of a sensor; its window if none is given.
     pub const fn refire_of(&self, sensor: usize) -> Micros {
         match self.uneven {
             Some(uneven) if sensor < uneven.refire.len() => uneven.refire[sensor],
@@ -29,7 +30,7 @@ impl Requirements<'_> {
         }
     }
 
-    /// The separation that two sensors need, by the larger of their `t_delta`; twice the same sensor for its stale
+    /// The separation that two sensors need, from the larger of their `t_delta`; give a sensor twice for its stale
     /// echoes. `None` for two that fire together.
     pub const fn separation_of(&self, x: usize, y: usize) -> Option<Micros> {
         if x != y && self.fire_together(x, y) {
@@ -90,8 +91,8 @@ impl Requirements<'_> {
         if self.share_a_line(x, y) && window.as_micros() > interval.as_micros() { window } else { interval }
     }
 
-    /// The smallest `t_delta`, the longest time that any one or two of this many sensors keep between firings, and the
-    /// smallest window.
+    /// The smallest `t_delta`, the longest time between firings that any sensor or pair of this many sensors keeps, and
+    /// the smallest window.
     pub(crate) const fn strictest(&self, sensors: usize) -> (Micros, Micros, Micros) {
         let (mut t_delta, mut gap, mut window) = (Micros::MAX, self.min_interval, Micros::MAX);
         let mut x = 0;

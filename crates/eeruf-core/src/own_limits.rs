@@ -1,6 +1,6 @@
 //! [`OwnLimits`]: the window and the `t_delta` of each sensor, for schedules whose sensors are not all alike.
 //!
-//! Which a schedule has is a type, so that a ring whose sensors are alike pays nothing for the others.
+//! The kind of limits is a type parameter, so that a ring of identical sensors pays nothing for them.
 
 use core::fmt;
 
@@ -13,19 +13,19 @@ use crate::time::{Micros, longer};
 pub struct SensorLimits {
     /// `T_delta` of the sensor, for which (13a), (13b) hold.
     pub t_delta: Micros,
-    /// `T_wind` of the sensor; the time until it fires again where no window was asked for.
+    /// `T_wind` of the sensor; if no window was asked for, the time until it fires again.
     pub window: Micros,
 }
 
-/// Limits that the sensors of a schedule have of their own: none, `()`, or some for each, [`EachSensor`]. A plan
-/// that changes from one to another holds references to them, `&EachSensor`.
+/// Limits that the sensors of a schedule have of their own: none, `()`, or some for each, [`EachSensor`]. A plan that
+/// can change its schedule holds references, `&EachSensor`.
 pub trait OwnLimits: Copy + fmt::Debug + sealed::Sealed {
-    /// The part of them that a plan holds which may change to others.
+    /// The form in which a plan that can change its schedule holds the limits.
     type Held<'s>: OwnLimits
     where
         Self: 's;
 
-    /// Borrows the limits, as a plan holds them.
+    /// Borrows the limits in the form that a plan holds.
     #[doc(hidden)]
     fn hold(&self) -> Self::Held<'_>;
 
@@ -64,7 +64,7 @@ pub trait OwnLimits: Copy + fmt::Debug + sealed::Sealed {
         0
     }
 
-    /// The most that the schedule was verified for, if sensors have limits of their own.
+    /// The greatest limits that the schedule was verified for, if sensors have limits of their own.
     #[doc(hidden)]
     #[inline]
     fn most(&self) -> Option<&VerifiedFor> {
@@ -90,8 +90,8 @@ impl OwnLimits for () {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct EachSensor<const K: usize> {
-    /// The largest `t_delta` and window, and a separation that is as much more than the `t_delta` as the pair with the
-    /// least to spare has; `None` if sensors are alike after all.
+    /// The largest `t_delta` and window, and a separation with the smallest margin over `t_delta` of any pair; `None`
+    /// if all sensors are alike.
     most: Option<VerifiedFor>,
     limits: [SensorLimits; K],
     /// The group that each sensor fires together with, from 1; 0 for none.
@@ -101,7 +101,7 @@ pub struct EachSensor<const K: usize> {
 }
 
 impl<const K: usize> EachSensor<K> {
-    /// No limits, for who decides at run time if sensors are alike.
+    /// No limits, for callers that learn only at run time whether sensors are alike.
     pub const NONE: Self = Self {
         most: None,
         limits: [SensorLimits { t_delta: Micros::MAX, window: Micros::MAX }; K],
@@ -109,8 +109,8 @@ impl<const K: usize> EachSensor<K> {
         lines: [0; K],
     };
 
-    /// For [`FlowRing::with_limits`](crate::flow::FlowRing::with_limits), with sets of sensors that fire together, bit
-    /// x for sensor x. A ring by a table refuses it, since no table is verified for it.
+    /// Limits for [`FlowRing::with_limits`](crate::flow::FlowRing::with_limits), with sets of sensors that fire
+    /// together, bit x for sensor x. A ring with a table refuses them, since no table was verified for them.
     pub const fn for_flow(limits: [SensorLimits; K], together: &[u64]) -> Self {
         const NOTHING: VerifiedFor = VerifiedFor {
             t_delta: Micros::ZERO,
@@ -123,7 +123,7 @@ impl<const K: usize> EachSensor<K> {
         Self { most: Some(NOTHING), ..Self::new(NOTHING, K, limits, Micros::ZERO, together) }
     }
 
-    /// With sets of sensors that share an echo line, bit x for sensor x, for rings without a table: none fires before
+    /// Adds sets of sensors that share an echo line, bit x for sensor x, for rings without a table: none fires before
     /// the windows of the others have ended. Sets that have a sensor in common are one line.
     #[must_use]
     pub const fn with_shared_lines(mut self, shared_lines: &[u64]) -> Self {
@@ -149,7 +149,7 @@ impl<const K: usize> EachSensor<K> {
         self
     }
 
-    /// With what a schedule of this many sensors was verified for, if they were all alike, and sets of sensors that
+    /// Limits for which a schedule of this many sensors was verified: those of all sensors, and sets of sensors that
     /// fire together, bit x for sensor x.
     pub(crate) const fn new(
         verified_for: VerifiedFor,
@@ -190,7 +190,7 @@ impl<const K: usize> EachSensor<K> {
         &self.groups
     }
 
-    /// The most that the schedule was verified for.
+    /// The greatest limits that the schedule was verified for.
     pub const fn most(&self) -> Option<&VerifiedFor> {
         self.most.as_ref()
     }
@@ -286,14 +286,14 @@ impl<const K: usize> OwnLimits for &EachSensor<K> {
     }
 }
 
-/// The limits by the schedules of the present period, the one before and the next. Nothing where sensors are alike.
+/// The limits by the schedules of the present period, the one before and the next; empty if sensors are alike.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(crate) struct InUse<U> {
     now: U,
-    /// The last firings may still be listening.
+    /// Limits of the period before, in which sensors may still be listening.
     before: U,
-    /// Limits of the next period; those of the present one if no other schedule begins with it.
+    /// Limits of the next period; those of the present one unless another schedule begins then.
     next: U,
 }
 
@@ -303,18 +303,18 @@ impl<U: OwnLimits> InUse<U> {
         Self { now: own_limits, before: own_limits, next: own_limits }
     }
 
-    /// Changes to others when the period ends.
+    /// Changes to other limits when the period ends.
     pub(crate) fn change(&mut self, own_limits: U) {
         self.next = own_limits;
     }
 
-    /// The period ends, and with it what the last change was from.
+    /// Ends the period, and forgets the limits before the last change.
     pub(crate) fn end_period(&mut self) {
         self.before = self.now;
         self.now = self.next;
     }
 
-    /// The limits of one sensor, in the first period after a change the lesser of both.
+    /// The limits of one sensor; in the first period after a change the lesser of both.
     #[inline]
     pub(crate) fn limits_of(&self, sensor: u8) -> Option<SensorLimits> {
         let (now, before) = (self.now.limits_of(sensor), self.before.limits_of(sensor));
@@ -328,12 +328,12 @@ impl<U: OwnLimits> InUse<U> {
         self.now.hears(receiver, emitter) || self.before.hears(receiver, emitter)
     }
 
-    /// The most that the schedule was verified for, if sensors have limits of their own.
+    /// The greatest limits that the schedule was verified for, if sensors have limits of their own.
     pub(crate) fn most(&self) -> Option<&VerifiedFor> {
         self.now.most()
     }
 
-    /// The most that the sensors of the schedule need to which it changes.
+    /// The greatest limits of the schedule that begins next.
     pub(crate) fn next_most(&self) -> Option<&VerifiedFor> {
         self.next.most()
     }

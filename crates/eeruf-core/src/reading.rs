@@ -1,4 +1,4 @@
-//! The outcome of one firing: a [`ReadingKind`], never a magic number; and [`Tally`], which counts the kinds.
+//! The outcome of one firing: [`ReadingKind`]; and [`Tally`], which counts the kinds.
 
 use core::fmt;
 
@@ -15,27 +15,26 @@ use crate::time::Micros;
 pub enum ReadingKind {
     /// An echo with nothing to compare it with: at the start, or after a firing without echo.
     First,
-    /// Near-identical to the reading before (Eq. 11), as many times in a row as the filter wants: it counts.
+    /// Near-identical to the reading before (Eq. 11), as many times in a row as the filter requires.
     Accepted,
     /// Not near-identical to the reading before: crosstalk, noise, or an object that moved too fast.
     Rejected,
     /// Near-identical to the reading before, but not yet often enough; only where more than two readings are compared.
     Repeated,
-    /// No echo within the window, once; or again and again, if nothing has shown that the sensor listened
+    /// No echo within the window, once; or repeatedly, if nothing shows that the sensor listened
     /// ([`Silence::NeverFree`](crate::Silence)).
     NoEcho,
-    /// No echo as many times in a row as the filter wants: nothing is in range.
+    /// No echo as many times in a row as the filter requires: nothing is in range.
     Clear,
-    /// Nothing but an edge within the blanking time: ringing of the transducer, or an object closer than it can
-    /// measure.
+    /// Only an edge within the blanking time: ringing of the transducer, or an object too close to measure.
     TooEarly,
-    /// An edge after the window has ended; it is compared with nothing. Without echo time: the reading of a
-    /// firing whose edge is not known to within 0.6 ms.
+    /// An edge after the window has ended; it is not compared. Without an echo time: the edge is not known to within
+    /// 0.6 ms.
     Late,
     /// The driver reported that the echo line was stuck when the sensor was to fire.
     Stuck,
     /// An echo that few readings support so far and none contradicts, nearer than what is confirmed: slow down for it.
-    /// Only from a judge of one's own.
+    /// Only from a judge of your own.
     Tentative,
     /// Near-identical to the reading before, though sound of another firing explains both: [`Explanation`] names it.
     /// Only from a [`Ring`](crate::Ring).
@@ -98,7 +97,7 @@ impl fmt::Display for ReadingKind {
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "snake_case"))]
 pub enum Explanation {
-    /// Two firings of this sensor, from 0, lie as far apart as the two readings were heard.
+    /// Two firings of this sensor, from 0, lie as far apart as the sounds of the two readings.
     Sensor(u8),
     /// A firing that is no longer remembered could have been heard.
     History,
@@ -113,7 +112,7 @@ impl fmt::Display for Explanation {
     }
 }
 
-/// The filter's answer to one firing of one sensor.
+/// A judge's answer to one firing of one sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
@@ -123,7 +122,7 @@ pub struct Verdict {
     /// The echo time: the accepted one, or else the earliest; `None` without echo.
     #[doc(alias = "T_echo")]
     pub t_echo: Option<Micros>,
-    /// The echo time of the firing before that it was compared with, if there was one.
+    /// The echo time of the previous firing that it was compared with, if any.
     pub previous: Option<Micros>,
     /// Number of firings of this sensor since the last accepted reading: 0 for an accepted one, `None` if none ever
     /// was. Stops at 65,534.
@@ -161,8 +160,8 @@ impl<N: Copy + Into<u32> + TryFrom<u32>> Tally<N> {
         self.counts.get(kind as usize).map_or(0, |&count| count.into())
     }
 
-    /// The rejection rate (end of Sec. 3.1): readings that were compared and do not count, rejected or ambiguous, of
-    /// all that were compared, in thousandths; `None` if none was compared.
+    /// The rejection rate (end of Sec. 3.1): the share of rejected and ambiguous readings among all that were compared,
+    /// in thousandths; `None` if none was compared.
     pub fn rejection_permille(&self) -> Option<u16> {
         let rejected = u64::from(self.of(ReadingKind::Rejected)) + u64::from(self.of(ReadingKind::Ambiguous));
         let compared = rejected + u64::from(self.of(ReadingKind::Accepted)) + u64::from(self.of(ReadingKind::Repeated));

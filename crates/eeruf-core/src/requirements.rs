@@ -88,7 +88,7 @@ impl Criterion {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Requirements<'a> {
-    /// `T_delta`: consecutive readings that differ by no more are near-identical (Eq. 11).
+    /// `T_delta`: the greatest difference of near-identical consecutive readings (Eq. 11).
     pub t_delta: Micros,
     /// The reading of (13a), (13b).
     pub criterion: Criterion,
@@ -99,7 +99,7 @@ pub struct Requirements<'a> {
     pub layout: Layout<'a>,
     /// `T_wind`, for which a sensor listens: it must not fire again earlier.
     pub window: Micros,
-    /// Deaf time of a sensor after it has fired. Two phases reject sound whenever it arrives, and do not ask.
+    /// Deaf time of a sensor after it has fired. Two phases reject sound of any age, so they ignore it.
     pub blanking: Micros,
     /// R: how long sound is audible; `None` for the window. Two phases reject sound of every age; a ring that fires
     /// late looks no further back than this, or than one period (two with `stale_echo`) where that is shorter or this
@@ -113,7 +113,8 @@ pub struct Requirements<'a> {
 }
 
 impl Requirements<'_> {
-    /// Criterion Exact at this `t_delta`, any four adjacent sensors of a line as neighbours, and nothing else asked.
+    /// Requirements with criterion Exact at this `t_delta`, any four adjacent sensors of a line as neighbours, and
+    /// nothing else.
     pub const fn new(t_delta: Micros) -> Self {
         Self {
             t_delta,
@@ -141,10 +142,10 @@ impl Requirements<'_> {
 pub struct Least {
     /// The shift, with two phases the smaller left side of (13a) and (13b); or the interval.
     pub value: Micros,
-    /// The sensors, from 0. Of a shift the one that sends and the one that hears, with two phases the smaller number
-    /// first; of an interval ascending within a period, in firing order across a period's end.
+    /// The sensors, from 0. For a shift, the sender and the receiver, with two phases the smaller number first; for an
+    /// interval, ascending within a period, in firing order across a period's end.
     pub sensors: (u8, u8),
-    /// The two phases in which the sound is heard, both `a` with two phases; or in which the two fire.
+    /// The two phases in which the sound is heard (both `a` with two phases), or in which the two sensors fire.
     pub phases: (Phase, Phase),
 }
 
@@ -188,12 +189,12 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
         least
     }
 
-    /// Between the firings of `x` and `y` in one period.
+    /// The interval between the firings of `x` and `y` in one period.
     pub(crate) const fn interval_within(&self, x: usize, y: usize, phase: usize) -> Least {
         Least::interval(self.fire_at(phase, x).abs_diff(self.fire_at(phase, y)), x, y, (phase, phase))
     }
 
-    /// From the firing of `x` in one period to that of `y` in the next.
+    /// The interval from the firing of `x` in one period to that of `y` in the next.
     pub(crate) const fn interval_across(&self, x: usize, y: usize, phase: usize) -> Least {
         let next = (phase + 1) % M;
         let t_fire = self.fire_at(next, y).as_micros() + self.period().as_micros();
@@ -254,7 +255,7 @@ impl<const K: usize> Schedule<K> {
         sums
     }
 
-    /// For a sensor and a phase that are there. A wait is below the period, so it fits.
+    /// Wait of a sensor and a phase that exist. A wait is below the period, so it fits.
     const fn wait_us(&self, phase: usize, sensor: usize) -> i32 {
         self.fire_at(phase, sensor).as_micros() as i32 - self.t_lag()[sensor].as_micros() as i32
     }

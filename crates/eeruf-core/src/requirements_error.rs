@@ -17,7 +17,7 @@ pub enum RequirementsError {
         /// Number of sensors.
         sensors: usize,
     },
-    /// There is not one value for each sensor.
+    /// The number of values differs from the number of sensors.
     Length {
         /// The name of the values.
         what: &'static str,
@@ -54,7 +54,7 @@ pub enum RequirementsError {
     },
 }
 
-/// `{:#}` counts sensors from 0 where `{}` counts from 1.
+/// Text of the error; `{:#}` counts sensors from 0 where `{}` counts from 1.
 impl fmt::Display for RequirementsError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let first = usize::from(!f.alternate());

@@ -1,4 +1,4 @@
-//! [`RingError`]: why a ring, or a judge, cannot be set up as asked.
+//! [`RingError`]: reasons why a ring or a judge cannot be set up.
 
 use core::fmt;
 
@@ -6,12 +6,12 @@ use crate::schedule::MAX_SENSORS;
 use crate::sensor_error::SensorError;
 use crate::time::Micros;
 
-/// The longest `t_delta` and blanking time, which a ring keeps in two bytes each.
+/// The longest `t_delta` and blanking time, which a ring stores in two bytes each.
 pub(crate) const LONGEST: Micros = Micros::new(u16::MAX as u32);
-/// The longest that sound can be said to be audible, about a minute.
+/// The longest time for which sound can be declared audible, about a minute.
 pub(crate) const MAX_AUDIBLE: Micros = Micros::new(1 << 26);
 
-/// The shortest time that a window, or sound, can last: what is less is a number of milliseconds.
+/// The shortest plausible window or audible time: a smaller number is probably in milliseconds.
 pub(crate) const PLAUSIBLE: Micros = Micros::from_millis(1);
 
 /// Refuses a setting that is not within its range.
@@ -23,7 +23,7 @@ pub(crate) const fn within(name: &'static str, value: Micros, least: Micros, mos
     Ok(())
 }
 
-/// The unit in which a setting out of its range was likely given, with how to say so.
+/// The unit in which an out-of-range setting was probably given, and the words for it.
 fn likely(name: &str, value: u32, least: u32, most: u32) -> &'static str {
     let fits = |value: Option<u32>| value.is_some_and(|value| (least..=most).contains(&value));
     match name {
@@ -56,7 +56,7 @@ pub enum RingError {
         /// The one that the schedule was verified for.
         verified: Micros,
     },
-    /// The window is over before the blanking time, or it is longer than any that a ring can keep.
+    /// The window ends before the blanking time, or the blanking time is longer than a ring can store.
     Blanking {
         /// The blanking time asked for.
         blanking: Micros,
@@ -82,7 +82,7 @@ pub enum RingError {
         /// The one that the schedule was verified for.
         verified: Micros,
     },
-    /// Any two readings within the window would be near-identical, or it is longer than any that a ring can keep.
+    /// Any two readings within the window would be near-identical, or `t_delta` is longer than a ring can store.
     CoarseTDelta {
         /// The `t_delta` asked for.
         t_delta: Micros,

@@ -13,7 +13,7 @@ pub struct SensorError {
 }
 
 impl SensorError {
-    /// Makes the error of a ring, which has at most 255 sensors.
+    /// An error for a ring, which has at most 255 sensors.
     pub(crate) fn new(sensor: u8, sensors: usize) -> Self {
         Self { sensor, sensors: u8::try_from(sensors).unwrap_or(u8::MAX) }
     }

@@ -1,4 +1,4 @@
-//! [`SensorSet`]: which of up to 64 sensors, in two words, since most targets have no 64-bit registers.
+//! [`SensorSet`]: a set of up to 64 sensors in two words, since most targets have no 64-bit registers.
 
 use crate::schedule::MAX_SENSORS;
 

@@ -1,4 +1,4 @@
-//! From echo time to distance and back, in integers: firmware has no floats to spare.
+//! Conversion between echo time and distance in integers, since firmware often lacks floats.
 
 use crate::time::Micros;
 
@@ -21,7 +21,7 @@ impl SpeedOfSound {
     /// Speed of sound at 20 C: 343.2 m/s (ISO 9613-1).
     pub const AT_20_CELSIUS: Self = Self { mm_per_s: 343_200 };
 
-    /// This speed, in mm/s.
+    /// A speed of sound in mm/s.
     pub const fn from_mm_per_s(mm_per_s: u32) -> Self {
         Self { mm_per_s }
     }

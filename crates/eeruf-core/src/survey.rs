@@ -1,10 +1,9 @@
-//! [`Survey`]: a measuring run after which it is known which sensors of a ring hear each other, and along paths of
-//! which length.
+//! [`Survey`]: a measuring run that finds which sensors of a ring hear each other, along paths of what length.
 //!
 //! Time is divided into slots, in each of which all earlier sound has died away. In a slot a sensor fires alone, or one
-//! fires and another some time, the *lead*, after it. What the second hears earlier by as much as the lead is longer is
-//! the first one's sound; its own echo does not move. A sensor that cannot listen without sending, as an HC-SR04, can
-//! be surveyed so. Each ordered pair has all leads, so both directions are measured.
+//! fires and another some time, the *lead*, after it. An edge of the second that comes earlier by as much as the lead
+//! is longer is the first one's sound; its own echo does not move. So even a sensor that cannot listen without sending,
+//! such as an HC-SR04, can be surveyed. Each ordered pair has all leads, so both directions are measured.
 
 use crate::schedule::MAX_SENSORS;
 use crate::time::{Instant, Micros};
@@ -30,9 +29,9 @@ pub struct SurveyPlan {
     quiet: Micros,
 }
 
-/// Longest time from its first poll to a survey's beginning; what seems further ahead has passed.
+/// Longest time from the first poll to a survey's beginning; an instant that seems further ahead has passed.
 const FURTHEST_BEGINNING: Micros = Micros::from_millis(600_000);
-/// A clock may step back by as much.
+/// Largest step back of a clock that is tolerated.
 const STEP_BACK: Micros = Micros::from_millis(1000);
 /// Longest time of a survey's settings, in microseconds: ten seconds.
 const LONGEST: u32 = 10_000_000;
@@ -52,14 +51,14 @@ impl SurveyPlan {
         Self { solos, ..self }
     }
 
-    /// Number of leads that each ordered pair has, the first of them 0, and from one to the next; at most ten seconds.
-    /// A path is seen with leads between its length and that less the receiver's own echo: two of them must fit.
+    /// Sets the number of leads of each ordered pair, from 0 on, and their step; at most ten seconds. A path is seen
+    /// with leads between its length less the receiver's own echo and its length: two leads must fit.
     #[must_use]
     pub const fn with_leads(self, leads: u8, lead_step: Micros) -> Self {
         Self { leads, lead_step: at_most_ten_seconds(lead_step), ..self }
     }
 
-    /// Sets how long a sensor listens, and how long nothing fires after that; at most ten seconds each.
+    /// Sets the listening time of a sensor, and the silence after it; at most ten seconds each.
     #[must_use]
     pub const fn with_window(self, window: Micros, quiet: Micros) -> Self {
         Self { window: at_most_ten_seconds(window), quiet: at_most_ten_seconds(quiet), ..self }
@@ -125,7 +124,7 @@ const fn at_most_ten_seconds(time: Micros) -> Micros {
     if time.as_micros() > LONGEST { Micros::new(LONGEST) } else { time }
 }
 
-/// A step that a survey asks for, or a measurement.
+/// An event of a survey: a firing that it asks for, or a measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum SurveyEvent {
@@ -142,7 +141,7 @@ pub enum SurveyEvent {
         fired: Instant,
         /// The slot: the log's `period`.
         slot: u32,
-        /// From firing to the first edge, if there was one within the window.
+        /// Time from firing to the first edge, if there was one within the window.
         t_echo: Option<Micros>,
     },
 }
@@ -152,7 +151,7 @@ pub enum SurveyEvent {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 struct Listener {
     sensor: u8,
-    /// Time when it fires; once it has fired, when its window ends.
+    /// Time when it fires; after that, the time when its window ends.
     due: Instant,
     fired: Option<Instant>,
     t_echo: Option<Micros>,
@@ -195,8 +194,8 @@ impl Survey {
         self.listeners = [firings.next(), firings.next()];
     }
 
-    /// Returns what is to be done now, or was measured; call again until there is nothing. A poll that comes late, by
-    /// up to 70 minutes less a slot, delays all that follows; a window that has closed keeps its edge.
+    /// Returns the next event; call again until there is none. A late poll, by up to 70 minutes less a slot, delays all
+    /// that follows; a window that has closed keeps its edge.
     pub fn poll(&mut self, now: Instant) -> Option<SurveyEvent> {
         self.catch_up(now);
         let next = self.begins + self.plan.slot_length();
@@ -219,8 +218,8 @@ impl Survey {
         })
     }
 
-    /// A deadline further ahead than any that is planned has passed half a turn of the clock ago or more, or the clock
-    /// has jumped: what is next is due now, and all that follows that much later.
+    /// Handles a deadline further ahead than any planned one: it passed at least half a turn of the clock ago, or the
+    /// clock has jumped. The next step is due now, and all later ones move with it.
     fn catch_up(&mut self, now: Instant) {
         let Some(deadline) = self.next_deadline() else { return };
         let has_begun = self.slot > 0 || self.listeners.iter().flatten().any(|listener| listener.fired.is_some());
@@ -235,7 +234,7 @@ impl Survey {
         }
     }
 
-    /// A sensor fires; if it is late, all that follows is.
+    /// Notes a firing; if it is late, all that follows is.
     fn fire(&mut self, sensor: u8, now: Instant, late: Micros) {
         self.begins += late;
         for listener in self.listeners.iter_mut().flatten().filter(|listener| listener.fired.is_none()) {
@@ -247,7 +246,7 @@ impl Survey {
         }
     }
 
-    /// A sensor's line showed an edge; only the first within its window counts.
+    /// Reports an edge of a sensor's line; only the first within its window counts.
     pub fn echo(&mut self, sensor: u8, at: Instant) {
         for listener in self.listeners.iter_mut().flatten().filter(|listener| listener.sensor == sensor) {
             let Some(fired) = listener.fired.filter(|_| listener.t_echo.is_none() && !listener.is_logged) else {
@@ -258,7 +257,7 @@ impl Survey {
         }
     }
 
-    /// Returns the time to poll again; `None` once it is over.
+    /// Returns the time of the next poll; `None` once the survey is over.
     pub fn next_deadline(&self) -> Option<Instant> {
         if self.is_over() {
             return None;

@@ -32,7 +32,7 @@ const fn table<const M: usize>(schedule: Result<Schedule<12, M>, ScheduleError>)
     }
 }
 
-/// Table I-a: the lags alone, as in conventional firing. Nothing alternates, so crosstalk repeats itself exactly.
+/// Table I-a: the lags alone, as in conventional firing. Nothing alternates, so crosstalk repeats exactly.
 pub const TABLE_I_A: Schedule<12> = table(Schedule::new(PERIOD, ms(T_LAG), [ms([0; 12]); 2]));
 
 /// Table I-b: waits in plain order. Separation 2 ms, but sensors 4 and 1 fire 1 ms apart.
@@ -50,8 +50,8 @@ pub const TABLE_I_C: Schedule<12> = table(Schedule::from_firing(
 pub const TABLE_I_D: Schedule<12> =
     table(Schedule::new(PERIOD, ms(T_LAG), [ms([24; 12]), ms([18, 12, 6, 0, 20, 14, 8, 2, 22, 16, 10, 4])]));
 
-/// The one rearrangement of the paper's waits, of 479,001,600, in which any four adjacent sensors fire at least 19 ms
-/// apart.
+/// The only one of 479,001,600 rearrangements of the paper's waits in which any four adjacent sensors fire at least 19
+/// ms apart.
 pub const THE_ONE_WITH_19_MS: Schedule<12> =
     table(Schedule::new(PERIOD, ms(T_LAG), [ms([24; 12]), ms([22, 16, 10, 4, 20, 14, 8, 2, 18, 12, 6, 0])]));
 

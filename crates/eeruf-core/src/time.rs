@@ -10,7 +10,7 @@ use core::ops::{Add, AddAssign};
 
 /// A duration in microseconds, 0 to 71.6 minutes.
 ///
-/// There is no `-` operator, since it could wrap: say [`abs_diff`](Self::abs_diff) or
+/// There is no `-` operator, since it could wrap: use [`abs_diff`](Self::abs_diff) or
 /// [`checked_sub`](Self::checked_sub).
 ///
 /// ```
@@ -27,17 +27,17 @@ use core::ops::{Add, AddAssign};
 pub struct Micros(u32);
 
 impl Micros {
-    /// No time at all.
+    /// A duration of zero.
     pub const ZERO: Self = Self(0);
     /// The longest duration, 4294.967295 s.
     pub const MAX: Self = Self(u32::MAX);
 
-    /// `us` microseconds.
+    /// A duration of `us` microseconds.
     pub const fn new(us: u32) -> Self {
         Self(us)
     }
 
-    /// `ms` milliseconds; saturates at [`Micros::MAX`] (from 4,294,968 ms on).
+    /// A duration of `ms` milliseconds; saturates at [`Micros::MAX`] (from 4,294,968 ms on).
     pub const fn from_millis(ms: u32) -> Self {
         Self(ms.saturating_mul(1000))
     }
@@ -90,7 +90,8 @@ pub(crate) const fn longer(one: Micros, other: Micros) -> Micros {
 }
 
 impl fmt::Display for Micros {
-    /// Milliseconds without trailing zeros (`24 ms`, `24.5 ms`), or microseconds below one millisecond (`999 us`).
+    /// Writes milliseconds without trailing zeros (`24 ms`, `24.5 ms`), or microseconds below one millisecond (`999
+    /// us`).
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (ms, us) = (self.0 / 1000, self.0 % 1000);
         if ms == 0 {
@@ -135,7 +136,7 @@ impl Instant {
         Self(us as u32)
     }
 
-    /// The reading of a clock of 64 bits at this instant: the one nearest to `now_us`, what it reads now. No reading is
+    /// The reading of a clock of 64 bits at this instant: the one nearest to `now_us`, its present reading, but not
     /// before the clock began.
     ///
     /// ```
@@ -168,7 +169,7 @@ impl Instant {
 
 impl Add<Micros> for Instant {
     type Output = Self;
-    /// The instant `later` after `self`, through a wrap if need be.
+    /// The instant `later` after `self`, through a wrap of the counter.
     fn add(self, later: Micros) -> Self {
         Self(self.0.wrapping_add(later.0))
     }

@@ -1,11 +1,11 @@
-//! [`Uneven`]: what sensors of one ring need that are not all alike.
+//! [`Uneven`]: needs of sensors that differ within a ring.
 
 use crate::requirements_error::RequirementsError;
 use crate::schedule::MAX_SENSORS;
 use crate::time::Micros;
 
-/// Needs of single sensors and pairs, where they are not all alike; anything not named here needs what
-/// [`Requirements`](crate::Requirements) say for all. Sensors are counted from 0.
+/// Needs of single sensors and pairs that differ; for anything not named here the [`Requirements`](crate::Requirements)
+/// of all hold. Sensors are counted from 0.
 ///
 /// ```
 /// use eeruf_core::{Layout, Micros, Requirements, Schedule, Uneven, conditions::ViolationKind};
@@ -29,29 +29,29 @@ use crate::time::Micros;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Uneven<'a> {
     /// `T_delta` of each sensor; empty if all have that of the requirements. Two sensors need the separation of the
-    /// one with the larger: crosstalk passes both ways.
+    /// larger one, since crosstalk passes both ways.
     pub t_delta: &'a [Micros],
     /// `T_wind` of each sensor; empty if all have that of the requirements.
     pub window: &'a [Micros],
-    /// Least time between two triggers of each sensor, where that is later than the end of its window; empty if all may
-    /// be then.
+    /// Least time between two triggers of each sensor, if later than the end of its window; empty if no sensor needs
+    /// it.
     pub refire: &'a [Micros],
-    /// Pairs of sensors with the least time between their firings, whatever the layout and the interval of all say; 0
-    /// for none.
+    /// Pairs of sensors with the least time between their firings, which overrides layout and common interval; 0 for
+    /// none.
     pub intervals: &'a [(u8, u8, Micros)],
     /// Sets of sensors that share an echo line, bit x for sensor x: none fires while another of them listens.
     pub shared_lines: &'a [u64],
     /// Sets of sensors that fire together, bit x for sensor x: at the same instant in every phase. They are declared
-    /// not to hear each other, so no separation is asked between them; all else is.
+    /// not to hear each other, so they need no separation; all other requirements hold.
     pub together: &'a [u64],
 }
 
 impl Uneven<'_> {
-    /// All sensors alike.
+    /// No differences: all sensors are alike.
     pub const NONE: Self =
         Self { t_delta: &[], window: &[], refire: &[], intervals: &[], shared_lines: &[], together: &[] };
 
-    /// Returns true if it makes sense for this many sensors.
+    /// Checks that the needs make sense for this many sensors.
     ///
     /// # Errors
     /// The first thing that does not: see [`RequirementsError`].

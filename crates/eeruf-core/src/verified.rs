@@ -8,8 +8,8 @@ use crate::schedule::{Schedule, VerifiedFor};
 use crate::time::{Micros, longer, shorter};
 use crate::verify::{Violation, stale_separation};
 
-/// A [`Schedule`] that was verified, and what for: [`schedule!`](crate::schedule!) makes it when the program is
-/// compiled, [`Schedule::verified`] at run time. It can be used wherever a schedule can.
+/// A [`Schedule`] with the requirements that it was verified for: [`schedule!`](crate::schedule!) makes it when the
+/// program is compiled, [`Schedule::verified`] at run time. It can replace a schedule everywhere.
 ///
 /// `L` is [`EachSensor`] where sensors have a window and a `t_delta` of their own, which a [`Ring`](crate::Ring) then
 /// keeps one by one.
@@ -21,12 +21,12 @@ pub struct VerifiedSchedule<const K: usize, const M: usize = 2, L = ()> {
 }
 
 impl<const K: usize, const M: usize, L> VerifiedSchedule<K, M, L> {
-    /// The schedule. It remembers what it was verified for: a ring that changes to it or restarts keeps its intervals.
+    /// The schedule. It remembers its requirements: a ring that changes to it or restarts keeps its intervals.
     pub const fn schedule(&self) -> &Schedule<K, M> {
         &self.schedule
     }
 
-    /// The schedule by itself, for those who keep schedules of both kinds. It remembers what it was verified for.
+    /// The plain schedule, for code that stores both kinds. It remembers its requirements.
     pub const fn into_schedule(self) -> Schedule<K, M>
     where
         L: Copy,
@@ -39,7 +39,7 @@ impl<const K: usize, const M: usize, L> VerifiedSchedule<K, M, L> {
         &self.own_limits
     }
 
-    /// The needs that it was verified for; where sensors have limits of their own, what every one of them allows.
+    /// The requirements that it was verified for; if sensors have limits of their own, those that all sensors allow.
     pub const fn verified_for(&self) -> VerifiedFor {
         match self.schedule.verified_for() {
             Some(verified_for) => *verified_for,
@@ -54,7 +54,7 @@ impl<const K: usize, const M: usize, L> VerifiedSchedule<K, M, L> {
         self.verified_for().t_delta
     }
 
-    /// The listening window that it was verified for; the longest that it allows where none was asked for.
+    /// The listening window that it was verified for; if none was asked for, the longest that it allows.
     #[doc(alias = "T_wind")]
     pub const fn window(&self) -> Micros {
         self.verified_for().window
@@ -76,7 +76,7 @@ impl<const K: usize, const M: usize, L> Deref for VerifiedSchedule<K, M, L> {
     }
 }
 
-/// As the schedule. Nothing can be read back as verified: read a [`Schedule`] and verify it.
+/// Serialization as a schedule. It cannot be deserialized as verified: read a [`Schedule`] and verify it.
 #[cfg(feature = "serde")]
 impl<const K: usize, const M: usize, L> serde::Serialize for VerifiedSchedule<K, M, L> {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
@@ -85,9 +85,8 @@ impl<const K: usize, const M: usize, L> serde::Serialize for VerifiedSchedule<K,
 }
 
 impl<const K: usize> Schedule<K> {
-    /// The schedule with the proof that it meets the requirements. Where sensors are not all alike, it holds for all
-    /// what every one of them allows: the smallest `t_delta` and window. [`verified_each`](Self::verified_each) keeps
-    /// each one's own.
+    /// The schedule with the proof that it meets the requirements. If sensors differ, it has the smallest `t_delta` and
+    /// window for all; [`verified_each`](Self::verified_each) keeps each sensor's own.
     ///
     /// # Errors
     /// The first [`Violation`] if it does not.
@@ -144,7 +143,7 @@ impl<const K: usize> Schedule<K> {
         Ok(VerifiedSchedule { schedule: schedule.with_verified_for(verified_for), own_limits: () })
     }
 
-    /// The schedule with the proof that it meets the requirements, and with what each sensor allows.
+    /// The schedule with the proof that it meets the requirements, and the limits of each sensor.
     ///
     /// # Errors
     /// The first [`Violation`] if it does not.

@@ -16,8 +16,8 @@ impl<const K: usize> Schedule<K> {
     }
 }
 
-/// Findings on firing times, held against requirements, by [`Schedule::verify`]. Everything is worked out when it is
-/// asked for, so that each violation is found and none stored.
+/// The findings of [`Schedule::verify`]: firing times checked against requirements. Each finding is computed when it is
+/// asked for, and none is stored.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Verification<'r, const K: usize>(TwoPhases<'r, K>);
@@ -39,8 +39,8 @@ impl<'r, const K: usize> Verification<'r, K> {
         self.0.stale_separation()
     }
 
-    /// The largest `t_delta` at which crosstalk - and stale echoes, if asked for - move far enough by the criterion, if
-    /// all sensors have the same; `None` if none does.
+    /// The largest common `t_delta` for which crosstalk (and stale echoes, if asked for) moves far enough by the
+    /// criterion; `None` if none does.
     #[doc(alias = "T_delta")]
     pub const fn max_t_delta(&self) -> Option<Micros> {
         let least = match closer(self.separation(), self.stale_separation()) {
@@ -50,7 +50,7 @@ impl<'r, const K: usize> Verification<'r, K> {
         self.0.requirements.criterion.max_t_delta(least)
     }
 
-    /// The smallest interval between neighbours, or, where pairs have intervals of their own, between two that need
+    /// The smallest interval between neighbours or, if pairs have intervals of their own, between two sensors that need
     /// one; `None` without any.
     pub const fn min_interval(&self) -> Option<Least> {
         self.0.min_interval()
@@ -61,8 +61,8 @@ impl<'r, const K: usize> Verification<'r, K> {
         self.0.schedule.min_refire()
     }
 
-    /// The violations, every one: first crosstalk, by (13a), then by (13b), stale echoes, intervals, windows, shared
-    /// echo lines, sensors triggered too soon, and sensors that must fire together.
+    /// All violations: first crosstalk by (13a), then by (13b), then stale echoes, intervals, windows, shared echo
+    /// lines, sensors triggered too soon, and sensors that must fire together.
     pub const fn violations(&self) -> impl Iterator<Item = Violation> + Clone + use<'r, K> {
         self.one_by_one()
     }
@@ -149,7 +149,7 @@ impl<const K: usize> TwoPhases<'_, K> {
     }
 }
 
-/// The lesser of two; the first of equal ones.
+/// The lesser of two; the first if they are equal.
 const fn closer(least: Option<Least>, next: Option<Least>) -> Option<Least> {
     match (least, next) {
         (Some(one), Some(other)) if one.value.as_micros() <= other.value.as_micros() => least,
@@ -213,19 +213,19 @@ impl ViolationKind {
     }
 }
 
-/// One requirement that does not hold. Printed, it counts sensors from 1; by `{:#}` from 0.
+/// One requirement that does not hold. `{}` counts sensors from 1, `{:#}` from 0.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Violation {
     /// The requirement.
     pub kind: ViolationKind,
-    /// The sensors concerned, from 0; twice the same if it concerns one.
+    /// The sensors concerned, from 0; the same twice if there is only one.
     pub sensors: (u8, u8),
-    /// The phases in which they fire; of crosstalk and stale echoes both `a`.
+    /// The phases in which they fire; for crosstalk and stale echoes both `a`.
     pub phases: (Phase, Phase),
     /// The time found.
     pub value: Micros,
-    /// The least time that would do; for two that must fire together the only one, 0.
+    /// The least time that would suffice; for two that must fire together 0, the only one.
     pub required: Micros,
 }
 
@@ -302,7 +302,7 @@ impl<const K: usize> Violations<'_, K> {
         None
     }
 
-    /// To the next sensor `y`, then the next `x`, phase and check.
+    /// Advances to the next sensor `y`, then the next `x`, phase and check.
     const fn step(&mut self) {
         let sensors = self.of.schedule.sensors();
         self.y += 1;

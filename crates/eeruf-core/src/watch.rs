@@ -1,12 +1,12 @@
-//! [`SensorWatch`]: what is known of the space before each sensor, for how long, and which sensors are blind.
+//! [`SensorWatch`]: the known state of the space before each sensor, its age, and blind sensors.
 
 use crate::reading::{Explanation, ReadingKind};
 use crate::ring::{Reading, RingEvent, STEP_BACK};
 use crate::sensor_error::SensorError;
 use crate::time::{Instant, Micros};
 
-/// Watches the events of a ring of up to `K` sensors: what is known of the space before each of them now, and which
-/// sensors hear echoes none of which is accepted. 16 bytes for each sensor and eight; a ring without it costs nothing.
+/// Watches the events of a ring of up to `K` sensors: it gives the known state of the space before each, and reports
+/// sensors whose echoes are never accepted. It takes 16 bytes for each sensor and eight more.
 ///
 /// ```
 /// use eeruf_core::{
@@ -40,7 +40,7 @@ use crate::time::{Instant, Micros};
 pub struct SensorWatch<const K: usize> {
     sensors: [Watched; K],
     blind_after: u8,
-    /// The last instant at which an event was taken in.
+    /// The instant of the last event.
     seen: Instant,
 }
 
@@ -50,8 +50,8 @@ pub struct SensorWatch<const K: usize> {
 #[non_exhaustive]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum SensorState {
-    /// Something stands there: an accepted echo, or a tentative one. One reading that does not confirm it leaves it, so
-    /// that age grows; two in a row do not.
+    /// An obstacle, by an accepted or a tentative echo. One reading that does not confirm it leaves it and lets its age
+    /// grow; two in a row end it.
     Obstacle {
         /// The echo time.
         t_echo: Micros,
@@ -70,14 +70,14 @@ pub enum SensorState {
     },
     /// The sensor does not answer, or its line is stuck.
     Unanswered {
-        /// The duration.
+        /// The time for which that has been so.
         since: Micros,
     },
     /// Nothing is known.
     Unknown {
-        /// The duration.
+        /// The time for which that has been so.
         since: Micros,
-        /// The last reason.
+        /// The latest reason.
         why: Doubt,
     },
 }
@@ -89,9 +89,9 @@ pub enum SensorState {
 pub enum Doubt {
     /// The sensor has not fired yet.
     NoFiring,
-    /// One echo, or one silence, that is not confirmed yet.
+    /// One echo or one silence that is not confirmed yet.
     Unsure,
-    /// Silence again, which nothing confirms: the sensor has not shown that it listens.
+    /// Silence again without a witness: the sensor has not shown that it listens.
     NoWitness,
     /// The last two echoes differ.
     Rejected,
@@ -103,13 +103,13 @@ pub enum Doubt {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 struct Watched {
     known: Known,
-    /// The instant that last confirmed it, or since which nothing is known or answered.
+    /// The instant of the last confirmation, or the beginning of the present state.
     at: Instant,
     /// True if the last reading did not confirm it.
     doubted: bool,
     /// True if the last reading was [`ReadingKind::NoEcho`].
     silent: bool,
-    /// Firings with an echo since something was last accepted or clear.
+    /// Number of firings with an echo since a reading was last accepted or clear.
     echoes: u8,
 }
 
@@ -127,16 +127,16 @@ enum Known {
 const LONGEST: Micros = Micros::new(1 << 31);
 
 impl<const K: usize> SensorWatch<K> {
-    /// Begins a watch `now`, when nothing is known. A sensor counts as blind when nothing was accepted for
-    /// `blind_after` firings with an echo, 1 to 255; with 0 no sensor does.
+    /// A watch that begins `now` and knows nothing. A sensor counts as blind after `blind_after` firings with an echo,
+    /// 1 to 255, none of which was accepted; 0 turns that off.
     pub const fn new(blind_after: u8, now: Instant) -> Self {
         let nothing =
             Watched { known: Known::Nothing(Doubt::NoFiring), at: now, doubted: false, silent: false, echoes: 0 };
         Self { sensors: [nothing; K], blind_after, seen: now }
     }
 
-    /// Forgets all, `now`: to be called with [`Ring::restart`](crate::Ring::restart), since after a long sleep the
-    /// clock may have come round, so that an old state would pass for a young one.
+    /// Forgets all, `now`. Call it with [`Ring::restart`](crate::Ring::restart): after a long sleep the clock may have
+    /// wrapped, so that an old state would look recent.
     pub const fn restart(&mut self, now: Instant) {
         *self = Self::new(self.blind_after, now);
     }
@@ -222,7 +222,7 @@ impl Watched {
         (self.known, self.at, self.doubted) = (known, now, false);
     }
 
-    /// Counts echoes in vain. Returns true if they have just become as many as make a sensor blind.
+    /// Counts a firing whose echo was not accepted. Returns true if the sensor has just become blind.
     fn counts(&mut self, kind: ReadingKind, blind_after: u8) -> bool {
         match kind {
             ReadingKind::Accepted | ReadingKind::Clear => self.echoes = 0,

@@ -8,7 +8,7 @@ mod schedules_as_serde_sees_them {
     use serde::de::{Deserialize, Deserializer, Error, Visitor, value};
     use serde::forward_to_deserialize_any;
 
-    /// A format that tells the fields it is asked for, and has none of them.
+    /// A format that records the fields it is asked for, and has none of them.
     struct AsksFor;
 
     impl<'de> Deserializer<'de> for AsksFor {
@@ -90,10 +90,10 @@ mod a_format_that_counts_fields {
     use serde::de::value::Error;
     use serde::ser::{Error as _, Impossible, Serialize, SerializeStruct, Serializer};
 
-    /// Counts the fields of a struct, which formats such as CBOR write before them.
+    /// A format that counts the fields of a struct, which formats such as CBOR write before them.
     struct Count;
 
-    /// Number of fields that were announced, and how many came.
+    /// Number of announced fields, and of fields that came.
     struct Fields(usize, usize);
 
     type Never = Impossible<(usize, usize), Error>;

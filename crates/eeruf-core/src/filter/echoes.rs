@@ -2,15 +2,15 @@
 
 use crate::time::Micros;
 
-/// Stands for "no echo" inside this crate: longer than any listening window.
+/// Marker of a missing echo inside this crate: longer than any listening window.
 pub(crate) const NO_ECHO: Micros = Micros::MAX;
-/// Silence with a witness, where it is kept among echo times: later than any.
+/// Marker of silence with a witness among stored echo times: later than any.
 pub(crate) const SILENCE: Micros = Micros::new(u32::MAX - 1);
 
 /// The latest echo time that is not taken for silence.
 pub(super) const LATEST: Micros = Micros::new(u32::MAX - 1);
 
-/// The echoes of a sorted array, without what stands for none.
+/// The echoes of a sorted array, without the markers of missing ones.
 pub(crate) fn heard<const E: usize>(echoes: &[Micros; E]) -> &[Micros] {
     let heard = echoes.iter().take_while(|&&echo| echo != NO_ECHO).count();
     echoes.get(..heard).unwrap_or_default()
@@ -25,13 +25,13 @@ pub(crate) fn insert<const E: usize>(echoes: &mut [Micros; E], mut echo: Micros)
     }
 }
 
-/// The echo time that an entry stands for.
+/// The echo time of an entry; `None` for a marker.
 pub(super) fn echo_time(echo: Micros) -> Option<Micros> {
     (echo != NO_ECHO).then_some(echo)
 }
 
-/// Measures echo times from a firing that was this much later; negative for earlier. Returns false if the first of them
-/// came before it; it then counts as having come with it.
+/// Measures echo times from a firing that was this much later; negative for earlier. Returns false if the first echo
+/// came before that firing; it then counts as simultaneous with it.
 pub(crate) fn shift<const E: usize>(echoes: &mut [Micros; E], later_us: i32) -> bool {
     let mut all_after = true;
     for echo in echoes.iter_mut().filter(|echo| **echo != NO_ECHO) {

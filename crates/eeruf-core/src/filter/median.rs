@@ -6,11 +6,11 @@ use crate::reading::{ReadingKind, Verdict};
 use crate::ring_error::RingError;
 use crate::time::Micros;
 
-/// No reading, which a median needs.
+/// Marker of a missing reading.
 const NOTHING: Micros = NO_ECHO;
 
-/// A judge that says the median of a sensor's last three readings, or of as many as it is told, up to `N`; silence is
-/// farther than any echo. A baseline: what foreign sound repeats is accepted.
+/// A judge that reports the median of a sensor's last three readings, or of another number up to `N`; silence counts as
+/// farther than any echo. It is a baseline: it accepts foreign sound that repeats.
 ///
 /// The echo time of a reading may be that of an earlier firing: [`Judge::stands_for`].
 ///
@@ -45,7 +45,7 @@ pub struct MedianFilter<const K: usize, const N: usize = 3> {
 struct Last<const N: usize> {
     /// Earliest echoes, [`SILENCE`] or [`NOTHING`].
     echoes: [Micros; N],
-    /// The place of the next one, which is that of the oldest.
+    /// Place of the next reading, which replaces the oldest.
     next: u8,
     stands_for: u8,
     is_clear: bool,
@@ -53,8 +53,8 @@ struct Last<const N: usize> {
 }
 
 impl<const K: usize, const N: usize> MedianFilter<K, N> {
-    /// A judge that knows nothing yet, and says the median of `of` readings: of an even number the nearer of the two in
-    /// the middle. `t_delta` is for the ring around it.
+    /// A judge without readings that reports the median of `of` readings; if `of` is even, the nearer of the two in the
+    /// middle. `t_delta` is for the ring around it.
     ///
     /// # Errors
     /// [`RingError::Setting`] unless `of` is 1 to `N`.
@@ -69,7 +69,7 @@ impl<const K: usize, const N: usize> MedianFilter<K, N> {
 impl<const N: usize> Last<N> {
     const NOTHING: Self = Self { echoes: [NOTHING; N], next: 0, stands_for: 0, is_clear: false, age: Age::NEVER };
 
-    /// Takes in a reading. Returns the echoes with their places.
+    /// Stores a reading. Returns the echoes with their places.
     fn push(&mut self, echo: Micros, of: u8) -> [(Micros, u8); N] {
         if let Some(oldest) = self.echoes.get_mut(usize::from(self.next)) {
             *oldest = echo;

@@ -5,12 +5,12 @@
 //! ```
 //!
 //! A true echo does not depend on the waits and passes; crosstalk moves by more than `T_delta` if firings kept a
-//! schedule that meets (13a), (13b), and is rejected. A [`Ring`](crate::Ring) does not rely on that: it asks of two
-//! readings that agree whether sound of another firing explains both. Sensors that report several echoes of one firing
-//! hand in all of them, and the earliest that repeats is accepted: crosstalk that arrives before the true echo then no
-//! longer hides it.
+//! schedule that meets (13a), (13b), and is rejected. A [`Ring`](crate::Ring) does not rely on that: it checks whether
+//! sound of another firing explains two readings that agree. If a sensor reports several echoes of one firing, all are
+//! compared, and the earliest that repeats is accepted: crosstalk that arrives before the true echo then no longer
+//! hides it.
 //!
-//! The room holds the public filter and the tracker behind it; it uses readings and times, and knows nothing of
+//! This module holds the public filter and the tracker behind it; it uses readings and times, and knows nothing of
 //! schedules.
 
 mod agreement;
@@ -69,11 +69,11 @@ impl<const K: usize, const E: usize> EchoFilter<K, E> {
         Self { trackers: Self::NOTHING_KNOWN, tolerance }
     }
 
-    /// Copied from flash: an array made at run time would first be built on the stack.
+    /// Initial state, copied from flash: an array made at run time would first be built on the stack.
     const NOTHING_KNOWN: [Tracker<E>; K] = [Tracker::NEW; K];
 
-    /// Takes in one firing of a sensor (from 0): the time of its echo, or `None` without echo. Nothing is asked about
-    /// what was fired, nor when an edge may have come: no promise about foreign sound holds here.
+    /// Judges one firing of a sensor (from 0) by the time of its echo, or `None` without echo. The filter does not know
+    /// what was fired, so it promises nothing about foreign sound.
     ///
     /// # Errors
     /// [`SensorError`] for a sensor out of range.
@@ -85,8 +85,8 @@ impl<const K: usize, const E: usize> EchoFilter<K, E> {
     /// change in microseconds that a good reading is expected to show since the firing before: `-2 v dt / c` for an
     /// object approached at `v`, where `dt` is the time between the two firings (see
     /// [`Schedule::refire_after`](crate::Schedule::refire_after)). The filter alone does not know what was fired: with
-    /// a change expected it accepts crosstalk of any schedule. [`Ring::poll_expecting`](crate::Ring::poll_expecting)
-    /// asks.
+    /// an expected change it accepts crosstalk of any schedule. [`Ring::poll_expecting`](crate::Ring::poll_expecting)
+    /// checks that too.
     ///
     /// # Errors
     /// [`SensorError`] for a sensor out of range.
@@ -107,7 +107,7 @@ impl<const K: usize, const E: usize> EchoFilter<K, E> {
         Ok(tracker.push(self.tolerance, heard(&earliest), expected_change_us, |_, _| Explained::ByNothing))
     }
 
-    /// Forgets the readings of a sensor, so that its next one is compared with nothing. The age goes on.
+    /// Forgets the readings of a sensor, so that its next one is compared with nothing. The age keeps counting.
     ///
     /// # Errors
     /// [`SensorError`] for a sensor out of range.

@@ -114,7 +114,7 @@ fn echoes_of_alternate_firings_are_never_accepted() {
     assert!(!kinds(&mut filter::<8>(100, 2), &firings).contains(&ReadingKind::Accepted));
 }
 
-/// The kinds of the readings of one sensor, where sound explains all pairs of echoes of at most so long.
+/// Kinds of one sensor's readings, if sound explains all pairs of echoes up to a given time.
 fn kinds_explained<const E: usize>(consecutive: u8, explained_to: u32, firings: &[&[u32]]) -> Vec<ReadingKind> {
     let agreement = Tolerance::new(Micros::new(100), Consecutive::new(consecutive).unwrap());
     let mut tracker = Tracker::<E>::NEW;

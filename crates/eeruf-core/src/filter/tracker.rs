@@ -9,13 +9,14 @@ use crate::time::Micros;
 /// The age of a sensor none of whose readings was ever accepted.
 const NEVER: u16 = u16::MAX;
 
-/// The echoes of one sensor's last firing: eight bytes where it reports one echo.
+/// The echoes of one sensor's last firing; eight bytes for a sensor that reports one echo.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(crate) struct Tracker<const E: usize> {
-    /// The echoes of the firing before, earliest first; [`NO_ECHO`] stands for silence where its run is not zero.
+    /// The echoes of the firing before, earliest first; [`NO_ECHO`] means silence if its run is not zero.
     known: [Micros; E],
-    /// The number of consecutive readings that each of them was in, at most as many as must agree; 0 for no echo.
+    /// For each of them, the number of consecutive readings that contained it, capped at the number that must agree; 0
+    /// for no echo.
     runs: [u8; E],
     /// Firings since the last accepted reading.
     age: u16,
@@ -29,14 +30,14 @@ impl<const E: usize> Tracker<E> {
         self.runs = [0; E];
     }
 
-    /// The firing of the known echoes was this much later than they were measured from; negative for earlier.
+    /// Moves the origin of the known echoes by this much; negative for earlier.
     pub(crate) fn shift(&mut self, later_us: i32) {
         if !shift(&mut self.known, later_us) {
             self.forget();
         }
     }
 
-    /// A firing that says nothing about the echo time: all runs end, and the age grows.
+    /// Records a firing without information about the echo time: all runs end, and the age grows.
     pub(crate) fn skip(&mut self, kind: ReadingKind, t_echo: Option<Micros>) -> Verdict {
         self.forget();
         self.verdict(kind, t_echo, None, None)

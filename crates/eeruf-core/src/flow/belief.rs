@@ -1,4 +1,4 @@
-//! [`Belief`]: what readings of a ring that fires in turn are worth.
+//! [`Belief`]: the judge of a ring that fires in turn.
 
 use super::motion::{Motion, Rate};
 use super::settings::BeliefSettings;
@@ -8,11 +8,11 @@ use crate::reading::{Explanation, ReadingKind, Verdict};
 use crate::ring_error::RingError;
 use crate::time::{Instant, Micros};
 
-/// Largest possible change of a good reading, since the last one, up to which a belief is kept.
+/// Longest change of a good reading since the last confirmation up to which a belief is kept.
 const TOO_FAR: u16 = 1_000;
-/// Age of a belief that never was, or is too old.
+/// Age of a belief that does not exist or is too old.
 const NEVER: u16 = u16::MAX;
-/// No reading to compare with, and no belief. As [`SILENCE`], later than any echo.
+/// Marker of a missing reading or belief. Like [`SILENCE`], it is later than any echo.
 const NOTHING: Micros = NO_ECHO;
 
 /// A sensor's state: 16 bytes, and four more for each further echo.
@@ -21,30 +21,31 @@ const NOTHING: Micros = NO_ECHO;
 struct Known<const E: usize> {
     /// The last reading, earliest echo first; or [`SILENCE`].
     last: [Micros; E],
-    /// The echo that is believed of it, or was.
+    /// The echo that is believed, or was last.
     believed: Micros,
     /// The change in microseconds that a good reading may show since the belief was last confirmed.
     grown: u16,
-    /// The greatest rate since its last firing.
+    /// The greatest rate since the sensor's last firing.
     rate: Rate,
     /// Firings since the last accepted reading.
     age: u16,
     /// Firings since the belief was last confirmed; stops at 255.
     missed: u8,
-    /// Contradictions that the belief outlasts while the robot stands.
+    /// Number of contradictions that the belief outlasts while the robot stands.
     conf: u8,
 }
 
-/// A judge that believes what fits its belief, and what two readings in a row say that nothing foreign explains.
+/// A judge that accepts readings that fit its belief, and two consecutive readings that agree and that nothing foreign
+/// explains.
 ///
-/// Standing, what is farther than the belief, or silence, must outlast it. Moving, each tolerance grows with the time
-/// between two readings, P too.
+/// While the robot stands, farther echoes and silence must outlast the belief. While it moves, each tolerance, P
+/// included, grows with the time between two readings.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Belief<const K: usize, const E: usize = 1> {
     settings: BeliefSettings,
     motion: Motion,
-    /// The robot moved at the last reading, or word of it.
+    /// True if the robot moved at the last reading, or was last said to move.
     moves: bool,
     /// The quiet that the last reading asks for.
     quiet: Quiet,
@@ -52,7 +53,7 @@ pub struct Belief<const K: usize, const E: usize = 1> {
 }
 
 impl<const K: usize, const E: usize> Belief<K, E> {
-    /// A judge that knows nothing yet.
+    /// A judge without beliefs.
     ///
     /// # Errors
     /// [`RingError::Setting`] for a setting out of its range.
@@ -81,7 +82,7 @@ impl<const K: usize, const E: usize> Belief<K, E> {
         }
     }
 
-    /// The change that a good reading may show since the one before, which the change since the belief grows by.
+    /// The change that a good reading may show since the one before; it also adds to the change since the belief.
     fn grow(&mut self, heard: &Heard<'_>) -> Micros {
         let (rate, recent) = (self.motion.rate(heard.fired), self.motion.recent(heard.fired));
         self.set_moves(rate.moves());
@@ -105,7 +106,7 @@ impl<const E: usize> Known<E> {
     const NOTHING: Self =
         Self { last: [NOTHING; E], believed: NOTHING, grown: 0, rate: Rate::STANDING, age: NEVER, missed: 0, conf: 0 };
 
-    /// This rate holds now.
+    /// Applies this rate from now on.
     fn moves_at(&mut self, rate: Rate) {
         self.rate = self.rate.max(rate);
     }
@@ -139,7 +140,7 @@ impl<const E: usize> Known<E> {
         self.believes() && is_kept && time.abs_diff(self.believed) <= most
     }
 
-    /// Returns what explains an echo that agrees with one of the reading before; `None` if none does.
+    /// Returns the explanation of an echo that agrees with one of the reading before; `None` if no echo agrees.
     fn twice(&self, time: Micros, span: Micros, t_delta: Micros, sounds: &impl Sounds) -> Option<Explained> {
         let (mut explained, most) = (None, t_delta.saturating_add(span));
         for &last in self.last.iter().filter(|&&last| last < SILENCE && time.abs_diff(last) <= most) {
@@ -151,8 +152,8 @@ impl<const E: usize> Known<E> {
         explained
     }
 
-    /// Judges echoes, or silence with a witness, that may have changed by `span`. Returns the quiet that they ask for,
-    /// too.
+    /// Judges echoes, or silence with a witness, that may have changed by `span`. Also returns the quiet that they ask
+    /// for.
     fn judge(
         &mut self,
         heard: &Heard<'_>,

@@ -10,7 +10,7 @@ use crate::time::{Instant, Micros};
 /// No reading to compare with.
 const NOTHING: Micros = NO_ECHO;
 
-/// A reading, and the change expected of it since.
+/// A reading, and the change expected of it since then.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 struct Vote {
@@ -18,7 +18,7 @@ struct Vote {
     echo: Micros,
     /// The change that odometry expects, in microseconds.
     expected_us: i32,
-    /// The change that the robot's motion allows beside it, in microseconds.
+    /// The further change that the robot's motion allows, in microseconds.
     grown: u16,
 }
 
@@ -41,11 +41,11 @@ impl Vote {
 struct Known<const N: usize> {
     /// The last readings, the latest first.
     last: [Vote; N],
-    /// The greatest rate since its last firing.
+    /// The greatest rate since the sensor's last firing.
     rate: Rate,
     age: Age,
     is_clear: bool,
-    /// The last reading holds its line still.
+    /// True if the sensor of the last reading still holds its line.
     is_held: bool,
 }
 
@@ -68,19 +68,19 @@ impl<const N: usize> Known<N> {
     }
 }
 
-/// A judge that accepts a reading if `m` of its sensor's last `n` readings agree with it, itself included, of which
-/// nothing foreign explains each pair: 3 of 4 for stops and maps, 2 of 2 and 2 of 3 for less delay. `N` is the room for
+/// A judge that accepts a reading if `m` of its sensor's last `n` readings, itself included, agree with it, and nothing
+/// foreign explains any pair of them: 3 of 4 for stops and maps, 2 of 2 and 2 of 3 for less delay. `N` is the room for
 /// readings, at most five.
 ///
-/// Two readings agree that differ by at most `T_delta`, after the change that odometry expects, and by what the
-/// robot's motion allows in between; P grows by as much. Silence agrees with silence. There is no belief that one
-/// reading could fit: what is accepted has `m` witnesses, and one path of foreign sound never has them, if `m` is 2 or
-/// more. The ring should remember two firings of each sensor more than `n`, or readings are
-/// [`Ambiguous`](ReadingKind::Ambiguous) for what it has forgotten.
+/// Two readings agree if, after the change that odometry expects, they differ by at most `T_delta` plus the change that
+/// the robot's motion allows; P grows by as much. Silence agrees with silence. A single reading never suffices: an
+/// accepted reading has `m` witnesses, which one path of foreign sound never has if `m` is 2 or more. The ring should
+/// remember `n + 2` firings of each sensor, or readings are [`Ambiguous`](ReadingKind::Ambiguous) because of forgotten
+/// ones.
 ///
-/// It is for rings whose waits differ from firing to firing, as those in turn: by a table of two phases every second
-/// reading hears all others as before. With [`Agreement`](crate::judge::Agreement) around it, it is the vote of a
-/// baseline, and 1 of 1 every echo.
+/// It suits rings whose waits differ from firing to firing, such as flow rings: under a table of two phases every
+/// second reading has the same crosstalk. With [`Agreement`](crate::judge::Agreement) around it, it is a baseline that
+/// votes, or with 1 of 1 one that accepts every echo.
 ///
 /// ```
 /// use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, judge::MOfN};
@@ -114,7 +114,7 @@ pub struct MOfN<const K: usize, const N: usize> {
     n: u8,
     t_delta: Micros,
     motion: Motion,
-    /// The robot moved at the last reading, or word of it.
+    /// True if the robot moved at the last reading, or was last said to move.
     moves: bool,
     /// The quiet that the last reading asks for.
     quiet: Quiet,
@@ -122,7 +122,7 @@ pub struct MOfN<const K: usize, const N: usize> {
 }
 
 impl<const K: usize, const N: usize> MOfN<K, N> {
-    /// A judge that knows nothing yet, of a robot that stands unless it says otherwise.
+    /// A judge without readings, for a robot that stands until it reports a speed.
     ///
     /// # Errors
     /// [`RingError::Setting`] unless `m` is 1 to `n`, and `n` 1 to `N`.
@@ -138,13 +138,13 @@ impl<const K: usize, const N: usize> MOfN<K, N> {
         Ok(Self { m, n, t_delta, motion, moves: false, quiet, known })
     }
 
-    /// Sets the speed in mm/s of a robot that reports none.
+    /// Sets the speed in mm/s that is assumed for a robot that reports none.
     #[must_use]
     pub const fn with_top_speed(self, speed_mm_s: u16) -> Self {
         Self { motion: Motion::new(speed_mm_s), moves: speed_mm_s > 0, ..self }
     }
 
-    /// The readings before have changed as this one tells.
+    /// Adds the change of this reading to the readings before.
     fn grow(&mut self, heard: &Heard<'_>) {
         let (rate, recent) = (self.motion.rate(heard.fired), self.motion.recent(heard.fired));
         self.moves = rate.moves();

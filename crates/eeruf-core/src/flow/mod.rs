@@ -1,12 +1,12 @@
-//! Firing in turn: one sensor after the other, with as much quiet around each firing as its readings have needed, and a
-//! throw of dice in every gap; readings are believed if they fit what is believed, or if two agree and nothing foreign
-//! explains both.
+//! Firing in turn: one sensor after the other, with as much quiet around each firing as its readings require, and a
+//! random time in every gap. Readings are accepted if they fit the belief, or if two agree and nothing foreign explains
+//! both.
 //!
-//! A robot that moves and is alone reports every echo, with twice the least quiet: see [`Votes`]. Belief goes on then,
-//! and decides on quiet, but only two in a row have the promise about one path of sound.
+//! A robot that moves and is alone reports every echo, with twice the least quiet: see [`Votes`]. The belief is still
+//! updated then, and decides about quiet, but only two readings in a row have the promise about one path of sound.
 //!
-//! The plan [`InTurn`] and the judge [`Belief`] work by what was fired: a late poll costs time, never a promise. What
-//! is proven of `twice` is in `docs/explanation/theory.md`; what is left to chance is measured.
+//! The plan [`InTurn`] and the judge [`Belief`] work by actual firings: a late poll costs time but breaks no promise.
+//! The proof about `twice` is in `docs/explanation/theory.md`; the remaining risks are measured.
 
 mod belief;
 pub(crate) mod m_of_n;
@@ -25,13 +25,13 @@ pub use plan::InTurn;
 pub use settings::{BeliefSettings, TurnSettings, Votes};
 
 /// A ring of up to `K` sensors that fires in turn, with up to `E` echoes of a firing, and remembers the last three
-/// firings of each: fewer explain nothing, more add nothing. `U` is [`EachSensor`](crate::EachSensor), or a reference
-/// to one, where sensors have limits of their own.
+/// firings of each: fewer are too few, more add nothing. `U` is [`EachSensor`](crate::EachSensor), or a reference to
+/// one, if sensors have limits of their own.
 pub type FlowRing<const K: usize, const E: usize = 1, U = ()> = Ring<InTurn<K, U>, Belief<K, E>, K, E, 3>;
 
 impl<const K: usize, const E: usize> FlowRing<K, E> {
-    /// A ring of `sensors` sensors that begins at `now`. Of `config` only how the ring listens counts: the window, and
-    /// the blanking time. How long sound is audible is the longest quiet of `turns`, and P is that of `belief`.
+    /// A ring of `sensors` sensors that begins at `now`. Of `config` only the window and the blanking time are used. R
+    /// is the longest quiet of `turns`, and P is that of `belief`.
     ///
     /// # Errors
     /// [`RingError::Setting`] for a setting out of its range, and as for [`Ring::judged_by`].
@@ -65,7 +65,7 @@ impl<const K: usize, const E: usize> FlowRing<K, E> {
         }
     }
 
-    /// Takes another seed for the dice: the chip's number, for a ring that the compiler made.
+    /// Changes the seed of the random gaps, for example to the chip's number in a ring that is a `const`.
     ///
     /// # Errors
     /// [`RingError::Setting`] for 0. The ring then goes on as before.

@@ -2,13 +2,13 @@
 
 use crate::time::{Instant, Micros};
 
-/// Sound that is heard was sent no longer ago: see `LONGEST_QUIET`.
+/// Greatest age of audible sound: see `LONGEST_QUIET`.
 const AUDIBLE: Micros = Micros::from_millis(250);
-/// Without a word for as long the top speed holds.
+/// Time without a report of speed after which the top speed is assumed.
 const SILENCE: Micros = Micros::from_millis(500);
-/// The longest time over which a change is worked out; what is older is believed no more.
+/// The longest time over which a change is computed; older beliefs are dropped.
 const LONGEST: u32 = (1 << 20) - 1;
-/// The distance of a sensor from the centre about which the robot turns is a metre over this: with its range the lever
+/// Inverse of a metre, the distance of a sensor from the centre about which the robot turns: with the range, the lever
 /// at which a wall moves.
 const PART_OF_A_METRE: u32 = 2;
 
@@ -19,9 +19,9 @@ pub(super) struct Rate(u16);
 
 impl Rate {
     pub(super) const STANDING: Self = Self(0);
-    /// `2 v / c` at 331 m/s, the slowest sound that a robot meets, and 6 % more, since at 3.6 m/s sound is sent so much
-    /// farther apart than it is heard: `2 v / 331 * 1.024 * 16 * 1.06` of a `v` in mm/s, rounded up. Readings change by
-    /// at most 4,095/16 us per 1,024 us.
+    /// `2 v / c` at 331 m/s, the slowest sound that a robot meets, plus 6 %, since at 3.6 m/s the intervals between
+    /// sending exceed those between hearing by that much: `2 v / 331 * 1.024 * 16 * 1.06` of a `v` in mm/s, rounded up.
+    /// Readings change by at most 4,095/16 us per 1,024 us.
     const fn of(speed_mm_s: u32) -> Self {
         // A Cortex-M0 divides by a power of two without a call.
         let speed = if speed_mm_s > 39_000 { 39_000 } else { speed_mm_s };
@@ -39,15 +39,15 @@ impl Rate {
     }
 }
 
-/// The robot's motion as far as it is known.
+/// The known motion of the robot.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(super) struct Motion {
     rate: Rate,
     top: Rate,
-    /// Time when the caller last said how fast it moves; `None` for not within [`SILENCE`].
+    /// Time when the caller last reported the speed; `None` if not within [`SILENCE`].
     told: Option<Instant>,
-    /// The greatest rates in the spans before and from `since` on, neither of them much shorter than sound is heard.
+    /// The greatest rates in the spans before and after `since`, neither much shorter than sound is audible.
     greatest: [Rate; 2],
     since: Instant,
 }
@@ -58,7 +58,7 @@ impl Motion {
         Self { rate: top, top, told: None, greatest: [top; 2], since: Instant::from_micros(0) }
     }
 
-    /// Takes in how fast the robot moves from now on. Returns the greater of the rates before and after.
+    /// Stores how fast the robot moves from now on. Returns the greater of the rates before and after.
     pub(super) fn set(&mut self, speed_mm_s: u32, turn_mrad_s: u32, now: Instant) -> Rate {
         if !now.has_reached(self.since) {
             // The first word of a clock in its upper half, or a clock that has jumped.
@@ -71,7 +71,8 @@ impl Motion {
         before.max(self.rate)
     }
 
-    /// The greatest rate while sound could be sent that is heard at an instant, which is not long before the last word.
+    /// The greatest rate during the time in which sound heard at an instant could be sent; the instant is not long
+    /// before the last report.
     pub(super) fn recent(&mut self, now: Instant) -> Rate {
         let rate = self.rate(now);
         if now.has_reached(self.since) && now.since(self.since) > AUDIBLE {
@@ -81,7 +82,7 @@ impl Motion {
         self.greatest[0].max(self.greatest[1])
     }
 
-    /// The rate at an instant, which is not long before the last word.
+    /// The rate at an instant not long before the last report.
     pub(super) fn rate(&mut self, now: Instant) -> Rate {
         let is_silent = |told: Instant| now.has_reached(told) && now.since(told) > SILENCE;
         if self.told.is_some_and(is_silent) {

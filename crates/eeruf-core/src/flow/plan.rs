@@ -1,4 +1,4 @@
-//! [`InTurn`]: when sensors fire that fire in turn.
+//! [`InTurn`]: the plan of rings that fire in turn.
 
 use super::settings::{LONGEST_REST, TurnSettings};
 use crate::judging::{FiringContext, Heard, Judge, Pace, Quiet};
@@ -9,10 +9,10 @@ use crate::ring_error::{PLAUSIBLE, RingError, within};
 use crate::schedule::{MAX_SENSORS, Phase};
 use crate::time::{Instant, Micros, longer, shorter};
 
-/// Quiet is kept in units of this, so that two bytes hold it.
+/// Unit in which quiet is stored, so that two bytes hold it.
 const UNIT: u32 = 4;
 const NOBODY: u8 = u8::MAX;
-/// Firings are forgotten when they are this old, long before differences of instants wrap.
+/// Age at which firings are forgotten, long before differences of instants wrap.
 const OLD: Micros = Micros::new(1 << 29);
 
 /// A sensor of the plan.
@@ -21,21 +21,21 @@ const OLD: Micros = Micros::new(1 << 29);
 struct Slot {
     /// Time when it last fired, if it has.
     fired: Instant,
-    /// Quiet that it needs after its firing and before, in units.
+    /// Quiet that it needs before and after its firing, in units.
     doubt: u16,
     /// The sensor after it in the order, or [`NOBODY`].
     then: u8,
     flags: u8,
 }
 
-/// The sensor has fired, not too long ago.
+/// The sensor has fired, and not too long ago.
 const FIRED: u8 = 1;
-/// The edge is awaited.
+/// The sensor awaits its edge.
 const LISTENS: u8 = 2;
 const DISABLED: u8 = 4;
-/// The sensor fires with one that has a turn.
+/// The sensor fires together with one that has a turn.
 const FOLLOWS: u8 = 8;
-/// The leader has fired, and it has not yet.
+/// The leader of its group has fired, and it has not yet.
 const PENDING: u8 = 16;
 
 impl Slot {
@@ -50,41 +50,42 @@ impl Slot {
 
 /// A plan that fires one sensor after the other, far ones in turn.
 ///
-/// A sensor fires when the quiet that it needs has passed since the firing before, when the quiet has passed that those
-/// need which still wait for their edge, and when it has rested; and then a throw of dice later. Those that fire
-/// together have one turn, by what any of them needs; those that share an echo line wait for each other's windows. A
-/// period is a round: it ends when the order begins again.
+/// A sensor fires a random time after three conditions hold: its own quiet has passed since the last firing, the quiet
+/// of all sensors that still await their edge has passed, and it has rested. Sensors that fire together share a turn,
+/// with the greatest need of the group; those that share an echo line wait for each other's windows. A period is a
+/// round: it ends when the order begins again.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct InTurn<const K: usize, U = ()> {
     /// The sensor that fires next, or [`NOBODY`] if the round ends.
     next: u8,
-    /// The sensor from which on, in the order, turns are still to come; [`NOBODY`] if the round ends.
+    /// The first sensor, in the order, whose turn is still to come; [`NOBODY`] if the round ends.
     from: u8,
     /// The sensor whose turn it is, or [`NOBODY`].
     turn: u8,
-    /// The sensor that has fired in this round, before its turn, or [`NOBODY`].
+    /// The sensor that has fired in this round before its turn, or [`NOBODY`].
     ahead: u8,
     sensors: u8,
-    /// At least the number of sensors that listen.
+    /// Upper bound of the number of sensors that listen.
     listening: u8,
-    /// While the robot moves the dice are twice as long, and where every echo is reported the least quiet.
+    /// The robot's motion: while it moves, random gaps are twice as long, and if every echo is reported, so is the
+    /// least quiet.
     pace: Pace,
     paused: bool,
     /// Time when the next sensor is due, or the round ends.
     due: Instant,
     /// Time when a sensor last fired, or the plan began.
     last: Instant,
-    /// The throw for the next gap.
+    /// The random time of the next gap.
     thrown: Micros,
     random: u32,
     window: Micros,
-    /// The least quiet, of a robot that stands or is among others, and the most.
+    /// Least quiet of a robot that stands or is among others, and greatest quiet.
     least: Micros,
     most: Micros,
     rest: Micros,
     dice: Micros,
-    /// Doubt to begin with, in units.
+    /// Initial doubt, in units.
     first: u16,
     slots: [Slot; K],
     own_limits: U,
@@ -124,7 +125,7 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
         self
     }
 
-    /// Takes another seed for the dice.
+    /// Changes the seed of the random gaps.
     pub(super) fn set_seed(&mut self, seed: u32) -> Result<(), RingError> {
         TurnSettings::check_seed(seed)?;
         self.random = seed;
@@ -133,7 +134,7 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
         Ok(())
     }
 
-    /// A plan of sensors that do not fire together.
+    /// A plan without groups of sensors that fire together.
     pub(super) const fn begin(
         sensors: usize,
         own_limits: U,
@@ -188,7 +189,7 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
         Ok(plan)
     }
 
-    /// Quiet that a sensor needs after its firing, and before it.
+    /// Quiet that a sensor needs before and after its firing.
     pub fn doubt_of(&self, sensor: u8) -> Option<Micros> {
         self.slot(sensor).map(|slot| self.quiet(slot))
     }
@@ -226,7 +227,7 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
         (0..self.sensors).zip(&self.slots)
     }
 
-    /// Returns true if another sensor is enabled and fires together with those of a group.
+    /// Returns true if another enabled sensor fires together with those of a group.
     fn is_with(&self, other: u8, group: u8) -> bool {
         group > 0 && self.own_limits.group_of(other) == group && self.is_enabled(other)
     }
@@ -263,8 +264,8 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
         all
     }
 
-    /// The time from the last firing until a sensor, and those that fire with it, may fire, without the dice: until
-    /// there is quiet, and until they have rested and their lines are free.
+    /// The time from the last firing until a sensor, and those that fire with it, may fire, without the random part:
+    /// until there is quiet, they have rested and their lines are free.
     fn waits(&self, sensor: u8, own: &Slot, listeners: &Listeners) -> (Micros, Micros) {
         let mut all = self.waits_alone(sensor, own, listeners);
         let group = self.own_limits.group_of(sensor);
@@ -299,7 +300,7 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
         self.own_limits.limits_of(sensor).map_or(self.window, |own| shorter(own.window, self.window))
     }
 
-    /// A sensor's last firing was at another instant.
+    /// Corrects the instant of a sensor's last firing.
     fn correct(&mut self, sensor: u8, at: Instant) {
         let Some(slot) = self.slot_mut(sensor) else { return };
         let was = core::mem::replace(&mut slot.fired, at);
@@ -309,14 +310,14 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
         self.decide_no_sooner();
     }
 
-    /// The time from the last firing until some time after another.
+    /// The time from the last firing to `after` another instant.
     fn since_last(&self, fired: Instant, after: Micros) -> Micros {
         let until = fired + after;
         if self.last.has_reached(until) { Micros::ZERO } else { until.since(self.last) }
     }
 
-    /// Decides like [`decide`](Self::decide) after a call that tells no time: nothing is due sooner than before, since
-    /// that might be long ago.
+    /// Decides like [`decide`](Self::decide) after a call that has no `now`: nothing becomes due sooner than before,
+    /// since that instant might be long past.
     #[inline(never)]
     fn decide_no_sooner(&mut self) {
         let due = self.due;
@@ -366,16 +367,16 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
     }
 }
 
-/// Quiet that sensors need which listen, from the last firing on.
+/// Quiet that the listening sensors need, from the last firing on.
 struct Listeners {
     /// Longest quiet that a listening sensor needs.
     most: Micros,
     whose: u8,
-    /// The most that any other needs.
+    /// Longest quiet that any other listening sensor needs.
     others: Micros,
 }
 
-/// The sensor in a place of the order: far ones in turn, so that neighbours never follow each other where the number of
+/// The sensor at a place of the order: far ones in turn, so that neighbours never follow each other if the number of
 /// sensors allows it.
 const fn in_order(place: u8, sensors: u8) -> u8 {
     const SIX: [u8; 6] = [0, 2, 4, 1, 5, 3];

@@ -1,4 +1,4 @@
-//! [`TurnSettings`] and [`BeliefSettings`]: what a ring that fires in turn is set up with.
+//! [`TurnSettings`] and [`BeliefSettings`]: the settings of a ring that fires in turn.
 
 use crate::own_limits::{EachSensor, SensorLimits};
 use crate::requirements::Requirements;
@@ -6,28 +6,28 @@ use crate::requirements_error::RequirementsError;
 use crate::ring_error::{PLAUSIBLE, RingError, within};
 use crate::time::{Micros, longer, shorter};
 
-/// Less is a number of milliseconds.
+/// Shortest valid quiet: a smaller number is probably in milliseconds.
 const LEAST_QUIET: Micros = Micros::new(100);
 /// The longest quiet, and the longest time between two firings of a sensor.
 const LONGEST_QUIET: Micros = Micros::from_millis(250);
 pub(super) const LONGEST_REST: Micros = Micros::from_millis(4_000);
 
-/// Settings for firing in turn. The least and the most quiet being equal, each has the same gap around it,
-/// as [one by one](Self::one_by_one).
+/// Settings for firing in turn. If the least and the greatest quiet are equal, all gaps are alike, as [one by
+/// one](Self::one_by_one).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct TurnSettings {
-    /// The least time from a firing to the next, of a robot that stands or is among others, from 100 us on. Where every
-    /// echo is reported, twice as much.
+    /// The least time from one firing to the next, at least 100 us, for a robot that stands or is among others; twice
+    /// as much if every echo is reported.
     pub least: Micros,
-    /// R: the most, and how long sound is heard, its tail included. 1 to 250 ms.
+    /// R: the greatest quiet, and how long sound is heard, its tail included. 1 to 250 ms.
     pub most: Micros,
-    /// The least time between two firings of a sensor, for which its module rests. 1 ms to 4 s.
+    /// The least time between two firings of a sensor, which its module needs to rest. 1 ms to 4 s.
     pub rest: Micros,
     /// Random time in every gap, from 0 to this while the robot stands, and to twice this while it moves. At least
-    /// eight ticks of the clock, so 8 us or none, or readings that agree are explained by chance.
+    /// eight ticks of the clock, so 8 us or none, or chance explains readings that agree.
     pub dice: Micros,
-    /// The seed of the dice, not 0: another one for each robot, as its chip's number.
+    /// The seed of the random gaps, not 0 and different on each robot, such as the chip's number.
     pub seed: u32,
 }
 
@@ -38,11 +38,11 @@ impl TurnSettings {
         Self { least: Micros::new(6_000), most, rest, dice: Micros::from_millis(2), seed }
     }
 
-    /// Settings for modules that listen for `window`, rest for `rest` and are deaf for `blanking`; of modules that are
-    /// not all alike, the longest window and rest, and the shortest blanking time.
+    /// Settings for modules that listen for `window`, rest for `rest` and are deaf for `blanking`; if modules differ,
+    /// give the longest window and rest, and the shortest blanking time.
     ///
-    /// Sound is taken to be heard for two ninths of the window after it: its tail. But no longer than until a sensor
-    /// listens again, or its own stale echoes would count as foreign.
+    /// Sound is assumed to stay audible for two ninths of the window after it ends (its tail), but no longer than until
+    /// a sensor listens again, or its own stale echoes would count as foreign.
     pub const fn for_module(seed: u32, window: Micros, rest: Micros, blanking: Micros) -> Self {
         let listens_again = longer(rest, window).saturating_add(blanking).saturating_sub(Micros::new(1));
         let tail = Micros::new(window.as_micros() / 9 * 2);
@@ -59,8 +59,8 @@ impl TurnSettings {
     }
 
     /// The limits of each sensor for [`FlowRing::with_limits`](crate::flow::FlowRing::with_limits): its window, its
-    /// `t_delta`, of which no more counts than that of the belief, the sensors that it fires together with, as those on
-    /// one trigger line do, and those with which it shares an echo line. All other requirements are for tables.
+    /// `t_delta` (at most that of the belief), the sensors with which it fires together, such as those on one trigger
+    /// line, and those with which it shares an echo line. All other requirements apply to tables.
     ///
     /// # Errors
     /// [`RequirementsError`] if what single sensors need is invalid for this many sensors.
@@ -78,7 +78,7 @@ impl TurnSettings {
         Ok(EachSensor::for_flow(limits, requirements.together()).with_shared_lines(uneven.shared_lines))
     }
 
-    /// Returns settings with the rest of the module that rests for longest.
+    /// Returns settings with the rest of the module that rests longest.
     #[must_use]
     pub fn keeping(self, requirements: &Requirements<'_>) -> Self {
         let refire = requirements.uneven.map_or(&[][..], |uneven| uneven.refire);
@@ -106,45 +106,45 @@ impl TurnSettings {
         within("seed", Micros::new(seed), Micros::new(1), Micros::MAX)
     }
 
-    /// Quiet to begin with.
+    /// Initial quiet.
     pub(super) const fn first(&self) -> Micros {
         self.least.saturating_add(Micros::new(self.most.saturating_sub(self.least).as_micros() / 5))
     }
 }
 
-/// The number of echoes in a row that makes one accepted.
+/// The number of consecutive echoes that make one accepted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Votes {
-    /// One while the robot moves, if it is alone; else two.
+    /// One while the robot moves and is alone, else two.
     ByMotion,
-    /// One: every echo is accepted, with twice the least quiet. Nothing but quiet keeps foreign ones out.
+    /// One: every echo is accepted, with twice the least quiet. Only quiet keeps foreign echoes out.
     EveryEcho,
     /// Two that nothing foreign explains, or one that fits what is believed.
     TwoInARow,
 }
 
-/// Belief of a ring that fires in turn.
+/// Settings of the [`Belief`](super::Belief) of a ring that fires in turn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct BeliefSettings {
-    /// `T_delta`: by how much two readings in a row may differ that agree, of a robot that stands.
+    /// `T_delta`: greatest difference of two consecutive readings that agree, for a robot that stands.
     pub t_delta: Micros,
-    /// H: by how much a reading may differ from what is believed, of a robot that stands; of an edge between two
-    /// instants the middle, since what fits has no promise anyway.
+    /// H: greatest difference of a reading from the belief, for a robot that stands. For an edge between two instants
+    /// the middle counts, since a reading that fits has no promise anyway.
     pub near: Micros,
     /// P: the largest change of a foreign path between two readings of a robot that stands.
     pub path_change: Micros,
-    /// Firings without belief after which a belief keeps nothing alive.
+    /// Number of firings without confirmation after which a belief ends.
     pub memory: u8,
-    /// Readings that confirm a belief so far that as many contradictions must come before what is farther, or silence,
-    /// is believed; of a robot that stands.
+    /// Greatest number of confirmations that count: as many contradictions must come before a farther echo, or silence,
+    /// replaces the belief of a robot that stands.
     pub hold: u8,
-    /// The speed that holds where the robot says none, in mm/s: 0, or at least 10.
+    /// The assumed speed of a robot that reports none, in mm/s: 0, or at least 10.
     pub top_speed_mm_s: u16,
     /// True if no other robot sends sound nearby.
     pub alone: bool,
-    /// Echoes in a row that make one accepted.
+    /// Number of consecutive echoes that make one accepted.
     pub votes: Votes,
 }
 

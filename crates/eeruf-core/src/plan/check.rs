@@ -1,4 +1,4 @@
-//! [`check_plan`]: runs a plan and holds it against the contract of [`Plan`].
+//! [`check_plan`]: runs a plan and checks the contract of [`Plan`].
 
 use core::fmt;
 
@@ -24,22 +24,22 @@ pub enum BrokenPromise {
     MinRefire {
         /// The sensor, from 0.
         sensor: u8,
-        /// After how long.
+        /// Time after its last firing.
         after: Micros,
     },
     /// A deadline lies further ahead than `horizon`.
     Horizon {
-        /// The distance.
+        /// Time from now to the deadline.
         ahead: Micros,
     },
-    /// Polled at one instant, it never comes to rest.
+    /// Polled at one instant, the plan never stops asking for steps.
     Endless,
     /// An enabled sensor did not fire within four horizons.
     Silent {
         /// The sensor, from 0.
         sensor: u8,
     },
-    /// `is_enabled` does not say what was set, or says that a sensor beyond the last is.
+    /// `is_enabled` differs from the last setting, or is true for a sensor beyond the last.
     Enabled {
         /// The sensor, from 0.
         sensor: u8,
@@ -70,9 +70,9 @@ impl fmt::Display for BrokenPromise {
 
 impl core::error::Error for BrokenPromise {}
 
-/// Runs a plan for `polls` polls from `now` on, as a ring would and worse: late polls, firings that come late,
-/// sensors that are disabled and enabled, restarts, and readings that are never accepted. For the tests of those who
-/// write a [`Plan`] of their own; the same calls every time, seeded by `seed`.
+/// Runs a plan for `polls` polls from `now` on under harder conditions than a ring's: late polls, late firings, sensors
+/// that are disabled and enabled, restarts, and readings that are never accepted. It is for tests of your own [`Plan`];
+/// `seed` fixes the calls.
 ///
 /// ```
 /// use eeruf_core::{Instant, plan::{ScheduledFiring, check_plan}, tables::TABLE_I_D};
@@ -96,10 +96,10 @@ pub fn check_plan<P: Plan>(plan: &mut P, now: Instant, polls: u32, seed: u32) ->
 #[derive(Clone, Copy, Default)]
 struct Seen {
     fired: Option<Instant>,
-    /// Time when it stops listening, if it has not.
+    /// Time when it stops listening; `None` if it has stopped.
     ends: Option<Instant>,
     disabled: bool,
-    /// Since when it could have fired.
+    /// Time since when it could have fired.
     waits_since: Option<Instant>,
 }
 
@@ -116,7 +116,7 @@ impl Check {
         ((u64::from(self.random) * u64::from(limit)) >> 32) as u32
     }
 
-    /// Goes to the deadline, or later, and takes all steps that are due.
+    /// Advances to the deadline or later, and takes all steps that are due.
     fn poll<P: Plan>(&mut self, plan: &mut P) -> Result<(), BrokenPromise> {
         let deadline = plan.deadline();
         if !self.now.has_reached(deadline) {
@@ -207,7 +207,7 @@ impl Check {
         Ok(())
     }
 
-    /// Disables, enables or restarts now and then.
+    /// Disables, enables or restarts sensors at random.
     fn act_at_random<P: Plan>(&mut self, plan: &mut P, poll: u32) -> Result<(), BrokenPromise> {
         if self.below(20) > 0 {
             return Ok(());

@@ -8,7 +8,7 @@ use crate::reading::Verdict;
 use crate::schedule::{Phase, VerifiedFor};
 use crate::time::{Instant, Micros};
 
-/// A firing to come, or one that is due.
+/// A firing that is planned or due.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Upcoming {
@@ -24,11 +24,11 @@ pub struct Upcoming {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PlanLimits<'s> {
-    /// Longest listening time of a sensor: it does not fire again within this time of firing, unless it has ended.
+    /// Longest listening time of a sensor: it does not fire again within this time unless it has stopped listening.
     pub longest_window: Micros,
-    /// Requirements that the schedule was verified for, if it was: the ring may ask for less, and not for more.
+    /// Requirements that the schedule was verified for, if it was: the ring may ask for less but not for more.
     pub verified_for: Option<&'s VerifiedFor>,
-    /// Time for which sound is taken to be audible: that of the verified requirements, or the period. `None` without a
+    /// Time for which sound is assumed audible: that of the verified requirements, or the period. `None` without a
     /// common period.
     pub audible: Option<Micros>,
 }
@@ -36,7 +36,7 @@ pub struct PlanLimits<'s> {
 /// Decides when each sensor of a ring fires: [`ScheduledFiring`](super::ScheduledFiring),
 /// [`ImmediateRefiring`](super::ImmediateRefiring), [`InTurn`](crate::flow::InTurn), or one of the caller's own.
 pub trait Plan {
-    /// The next firing of a plan that is run without a ring, if one is due; periods end as they come. Call again until
+    /// The next firing that is due, for a plan that runs without a ring; periods end by themselves. Call again until
     /// there is none.
     #[inline]
     fn poll(&mut self, now: Instant) -> Option<Upcoming> {
@@ -60,61 +60,59 @@ pub trait Plan {
     fn deadline(&self) -> Instant;
     /// The sensor that fires next and the phase of its wait; none if the period ends next.
     fn next_firing(&self) -> Option<(u8, Phase)>;
-    /// The firings to come, in their order, if none is late: as many as are decided, at least the next one of this
-    /// period.
+    /// The next firings in order, if none is late: all that are decided, at least the next one of this period.
     fn upcoming(&self) -> impl Iterator<Item = Upcoming> {
         let due = self.deadline();
         self.next_firing().map(|(sensor, phase)| Upcoming { sensor, phase, due }).into_iter()
     }
-    /// Fires that sensor, `now`. To be called when it is due.
+    /// Fires that sensor, `now`. Call it when the firing is due.
     fn fire(&mut self, now: Instant);
-    /// A sensor has fired this much later than [`fire`](Self::fire) was called for: what follows from its firing moves
-    /// by as much, and no interval that is still to come gets shorter.
+    /// Notes that a sensor fired this much later than [`fire`](Self::fire) was called for: all that depends on its
+    /// firing moves by as much, and no interval to come gets shorter.
     fn postpone(&mut self, sensor: u8, by: Micros);
-    /// Ends the period, `now`. Returns its phase, and whether the next one does not follow on it as the schedule says:
-    /// because another schedule begins, or because periods were left out. To be called when that is due.
+    /// Ends the period, `now`, and returns its phase. The flag is true if the next period does not follow as scheduled,
+    /// because another schedule begins or periods were skipped. Call it when the end is due.
     fn end_period(&mut self, now: Instant) -> (Phase, bool);
-    /// Takes in a sensor's reading with its verdict, and the judge, for plans that fire by what is believed.
+    /// Notes a sensor's reading with its verdict, and the judge, for plans that depend on beliefs.
     fn judged(&mut self, _heard: &Heard<'_>, _verdict: &Verdict, _judge: &impl Judge) {}
-    /// A sensor turns out to have fired `at` this instant.
+    /// Corrects a sensor's last firing to this instant.
     fn fired(&mut self, _sensor: u8, _at: Instant) {}
-    /// A sensor has stopped listening: its echo came in, or its window closed, `at` this instant.
+    /// Notes that a sensor stopped listening `at` this instant: its echo came in, or its window closed.
     fn ended(&mut self, sensor: u8, at: Instant);
-    /// The next firing is due no sooner than this, by what it was told just now: late counts from then.
+    /// The instant before which the next firing was not due, judging by the last call: lateness counts from it.
     fn due_from(&mut self, _soonest: Instant) {}
-    /// A sensor's readings are forgotten: what follows from them begins again.
+    /// Forgets a sensor's readings, and all that depends on them.
     fn forget(&mut self, _sensor: u8) {}
-    /// Number of sensors it fires.
+    /// Number of sensors that the plan fires.
     fn sensors(&self) -> usize;
-    /// Lets a sensor fire from its next turn on, or stops it.
+    /// Enables a sensor from its next turn on, or disables it.
     fn set_enabled(&mut self, sensor: u8, enabled: bool);
-    /// Lets no sensor fire until it is unset; periods go on.
+    /// Pauses all sensors, or resumes them; periods go on.
     fn set_paused(&mut self, paused: bool);
-    /// Returns true if a sensor fires, but for a pause.
+    /// Returns true if a sensor is enabled, whether or not the plan is paused.
     fn is_enabled(&self, sensor: u8) -> bool;
-    /// The robot moves so, or stands.
+    /// Sets the robot's motion.
     fn set_pace(&mut self, _pace: Pace) {}
-    /// Starts again with phase a, no sooner than `now`.
+    /// Starts again with phase a, at `now` or later.
     fn restart(&mut self, now: Instant);
-    /// Properties of a sensor's last firing, `periods_ago` periods before the present one.
+    /// The context of a sensor's last firing, which was `periods_ago` periods before the present one.
     fn last_firing(&self, sensor: u8, periods_ago: u8) -> FiringContext;
     /// Limits in the present period.
     fn limits(&self) -> PlanLimits<'_>;
-    /// Limits from the next period on, if the schedule changes with it.
+    /// Limits from the next period on, if the schedule changes then.
     fn next_limits(&self) -> Option<PlanLimits<'_>> {
         None
     }
-    /// Returns true if `receiver` can hear `emitter`, which is so for all sensors but those that were declared not to
-    /// hear each other because they fire together.
+    /// Returns true if `receiver` can hear `emitter`: always, except for sensors that fire together and were declared
+    /// not to hear each other.
     fn hears(&self, _receiver: u8, _emitter: u8) -> bool {
         true
     }
-    /// Limits of one sensor, where sensors are not all alike; the ring asks for no more than this either. `None` for
-    /// every sensor where they are.
+    /// Limits of one sensor if sensors differ, which the ring respects too; `None` if all are alike.
     fn limits_of(&self, _sensor: u8) -> Option<SensorLimits> {
         None
     }
-    /// No sensor fires again within this time of firing.
+    /// The least time between two firings of a sensor.
     fn min_refire(&self) -> Micros;
     /// Longest time to a deadline, unless the clock has jumped.
     fn horizon(&self) -> Micros;

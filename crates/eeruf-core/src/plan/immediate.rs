@@ -10,7 +10,8 @@
 //! T_err,b = T_echo + T_x,b - T_y,b                                                  (10b)
 //! ```
 //!
-//! In (8) the filter takes it for a true echo. In (10a), (10b) consecutive readings differ, and it does not.
+//! With (8) the filter takes it for a true echo. With (10a), (10b) consecutive readings differ, and the filter rejects
+//! them.
 
 use core::ops::Deref;
 
@@ -24,14 +25,14 @@ use crate::time::{Instant, Micros};
 /// T_wait`.
 pub type ImmediateRefiring<'s, const K: usize, const M: usize = 2> = Refiring<&'s Schedule<K, M>, K, M>;
 
-/// [`ImmediateRefiring`] by any pointer `T` to a [`Schedule`]: with an `Arc` it owns what it fires by.
+/// [`ImmediateRefiring`] with any pointer `T` to a [`Schedule`]: an `Arc` owns it.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Refiring<T, const K: usize, const M: usize = 2> {
     schedule: T,
     min_refire: Micros,
     sensors: [Turn; K],
-    /// Sensors that have fired and not yet ended.
+    /// Sensors that have fired and are still listening.
     listening: SensorSet,
     enabled: SensorSet,
     period_start: Instant,
@@ -42,15 +43,14 @@ pub struct Refiring<T, const K: usize, const M: usize = 2> {
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 struct Turn {
-    /// Time when the sensor fires next; while it listens, when it fired.
+    /// Time when the sensor fires next; while it listens, the time when it fired.
     at: Instant,
     phase: u8,
 }
 
 impl<T: Deref<Target = Schedule<K, M>>, const K: usize, const M: usize> Refiring<T, K, M> {
-    /// Begins at `now`. The lags and waits are those of `schedule`; its period only says how often
-    /// periods end. No sensor fires again sooner than
-    /// `min_refire` after it has fired; more than [`MAX_PERIOD`](crate::MAX_PERIOD) counts as that.
+    /// A plan that begins at `now` with the lags and waits of `schedule`, whose period only sets how often periods end.
+    /// No sensor fires again within `min_refire`, which is at most [`MAX_PERIOD`](crate::MAX_PERIOD).
     pub fn new(schedule: T, min_refire: Micros, now: Instant) -> Self {
         let sensors = [Turn { at: now, phase: 0 }; K];
         // Instants further ahead than half a turn of the clock would count as past.
@@ -70,7 +70,7 @@ impl<T: Deref<Target = Schedule<K, M>>, const K: usize, const M: usize> Refiring
     }
 
     /// The enabled sensor that is due first, measured from the start of the period: all times lie within half a turn of
-    /// the clock of it.
+    /// the clock from there.
     fn first(&self) -> Option<(u8, Instant)> {
         let mut first: Option<(u8, Instant)> = None;
         for (x, turn) in self.sensors.iter().take(self.schedule.sensors()).enumerate() {

@@ -1,8 +1,7 @@
 //! When sensors fire: the trait [`Plan`], with *scheduled firing* and *immediate refiring* (Sec. 3.1, Figs. 2, 3), and
-//! whether sensors have limits of their own.
+//! the limits of single sensors.
 //!
-//! A plan knows nothing of echoes but what a ring tells it. [`check_plan`] tries what a plan of the caller's own has to
-//! keep.
+//! A plan learns of echoes only from its ring. [`check_plan`] tests a plan of your own against the contract.
 
 mod check;
 mod contract;

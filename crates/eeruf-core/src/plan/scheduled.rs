@@ -13,8 +13,8 @@ use crate::verified::VerifiedSchedule;
 
 /// Scheduled firing: every sensor fires once per period, at the time the [`Schedule`] gives for the phase.
 ///
-/// A firing that is polled late moves all that follow by as much: the timetable may stretch but never shrinks, so that
-/// no two firings ever come closer than in the schedule, however late the caller is.
+/// A late poll delays all later firings by as much: the timetable may stretch but never shrinks, so that no two firings
+/// ever come closer than in the schedule, however late the caller is.
 ///
 /// ```
 /// use eeruf_core::{Instant, Phase, plan::{Plan, ScheduledFiring, Upcoming}, tables::TABLE_I_D};
@@ -25,12 +25,12 @@ use crate::verified::VerifiedSchedule;
 /// assert_eq!(plan.poll(first), Some(Upcoming { sensor: 0, phase: Phase::A, due: first }));
 /// ```
 ///
-/// Where sensors have limits of their own, each listens and compares as it was verified for; in the first period after
-/// a change of schedules by the lesser of what both allow it.
+/// If sensors have limits of their own, each uses those that it was verified for; in the first period after a change of
+/// schedules, the lesser of both.
 pub type ScheduledFiring<'s, const K: usize, const M: usize = 2, U = ()> = TableFiring<&'s Schedule<K, M>, K, M, U>;
 
 /// [`ScheduledFiring`] by any pointer `T` to a [`Schedule`]: with `&Schedule` it borrows, with an `Arc` it owns, so
-/// that it can be cloned and outlive whoever made the schedule.
+/// that it can be cloned and outlive the schedule's creator.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 // In this order for the short offsets of a Cortex-M0: see `Ring`.
@@ -39,21 +39,21 @@ pub struct TableFiring<T, const K: usize, const M: usize = 2, U = ()> {
     phase: u8,
     /// Place in the firing order of the sensor after the next one.
     following: u8,
-    /// The next sensor to fire; one out of range when all have.
+    /// The next sensor to fire; out of range when all have fired.
     next: u8,
-    /// True if any sensor is disabled, since asking all 64 takes time at every firing, and whether all are, by a pause.
+    /// State of disabled and paused sensors, kept because asking all 64 at every firing takes time.
     skips: Skips,
-    /// Time when it is due, or when the period ends. Worked out once per step, since it is asked for at every poll.
+    /// Time when the next step is due, a firing or the period's end; stored because each poll asks for it.
     due: Instant,
     schedule: T,
-    /// Time when a sensor last fired, or long enough ago.
+    /// Time when a sensor last fired; initially a time long past.
     last_fired: Instant,
     disabled: SensorSet,
     next_schedule: Option<T>,
     own_limits: InUse<U>,
 }
 
-/// Sensors that do not fire.
+/// Sensors that are skipped.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 enum Skips {
@@ -75,7 +75,7 @@ impl<'s, const K: usize, const M: usize, U: OwnLimits> ScheduledFiring<'s, K, M,
         Self::with_limits(schedule.schedule(), schedule.own_limits(), now)
     }
 
-    /// Fires like [`verified`](Self::verified), with schedule and limits given apart.
+    /// Fires like [`verified`](Self::verified), with the schedule and the limits as two arguments.
     pub fn with_limits<L: OwnLimits<Held<'s> = U>>(
         schedule: &'s Schedule<K, M>,
         own_limits: &'s L,
@@ -91,9 +91,8 @@ impl<'s, const K: usize, const M: usize, U: OwnLimits> ScheduledFiring<'s, K, M,
 
     /// Changes to another schedule when the present period ends.
     ///
-    /// Neither schedule was verified against the other, so its first period begins late enough after the last firing to
-    /// keep every refire time of the present schedule and every interval that both were verified for, and those of one
-    /// that was not verified.
+    /// The two schedules were not verified against each other, so the first period begins late enough after the last
+    /// firing to keep every refire time of the present schedule and every interval of both.
     pub fn change_schedule<L: OwnLimits<Held<'s> = U>>(&mut self, schedule: &'s VerifiedSchedule<K, M, L>) {
         self.change_to(schedule.schedule(), schedule.own_limits().hold());
     }
@@ -136,8 +135,8 @@ impl<T: Deref<Target = Schedule<K, M>>, const K: usize, const M: usize, U: OwnLi
         self.own_limits.change(own_limits);
     }
 
-    /// Turns to the following sensor, its gap after this instant, or to the next enabled one after it; if there is
-    /// none, to the end of the period.
+    /// Moves on to the following sensor, whose gap counts from this instant, or to the next enabled one after it; if
+    /// there is none, to the end of the period.
     #[inline]
     fn turn(&mut self, from: Instant) {
         self.due = from;
@@ -162,7 +161,7 @@ impl<T: Deref<Target = Schedule<K, M>>, const K: usize, const M: usize, U: OwnLi
         self.due += gap;
     }
 
-    /// Returns the time when a period may begin that was not verified against what fired before.
+    /// The time when a period may begin that was not verified against earlier firings.
     fn settled(&self) -> Instant {
         self.last_fired + settling_time(&*self.schedule)
     }
@@ -178,13 +177,13 @@ impl<T: Deref<Target = Schedule<K, M>>, const K: usize, const M: usize, U: OwnLi
     }
 }
 
-/// Returns true if a number in the firing order is a sensor's. A schedule with room for more has no more.
+/// Returns true if a number in the firing order is a sensor's. Unused room of a schedule has none.
 const fn is_sensor<const K: usize>(sensor: u8) -> bool {
     (sensor as usize) < K && (sensor as usize) < MAX_SENSORS
 }
 
-/// Silence after the last firing before a period may begin that was not verified against it. Where nothing was verified
-/// a whole period: two neighbours fire within one, so no interval can be longer.
+/// Silence after the last firing before a period may begin that was not verified against it. For an unverified schedule
+/// it is a whole period: two neighbours fire within one, so no interval can be longer.
 const fn settling_time<const K: usize, const M: usize>(schedule: &Schedule<K, M>) -> Micros {
     match schedule.verified_for() {
         Some(verified_for) => longer(verified_for.min_interval, schedule.min_refire()),
@@ -193,15 +192,15 @@ const fn settling_time<const K: usize, const M: usize>(schedule: &Schedule<K, M>
 }
 
 impl<'s> PlanLimits<'s> {
-    /// Limits under a schedule whose sensors have limits of their own, of which this is the most: none of them fires
-    /// again within its own window.
+    /// Limits of a schedule whose sensors have limits of their own, at most these: no sensor fires again within its own
+    /// window.
     fn of_most(most: &'s VerifiedFor) -> Self {
         Self { longest_window: most.window, verified_for: Some(most), audible: Some(most.audible) }
     }
 }
 
 impl<const K: usize, const M: usize> Schedule<K, M> {
-    /// Limits that it sets to a ring.
+    /// Limits that the plan sets to a ring.
     pub(crate) const fn limits(&self) -> PlanLimits<'_> {
         let audible = match self.verified_for() {
             Some(verified_for) => verified_for.audible,
@@ -253,7 +252,7 @@ impl<T: Deref<Target = Schedule<K, M>>, const K: usize, const M: usize, U: OwnLi
         is_sensor::<K>(self.next).then_some((self.next, Phase(self.phase)))
     }
 
-    /// To the end of the next period, unless that is another schedule's.
+    /// The firings up to the end of the next period, unless another schedule begins there.
     fn upcoming(&self) -> impl Iterator<Item = Upcoming> {
         let (mut phase, mut following, mut sensor, mut due) = (self.phase, self.following, self.next, self.due);
         let mut goes_on = self.next_schedule.is_none() && self.skips != Skips::All;

@@ -18,9 +18,9 @@ use crate::verified::VerifiedSchedule;
 impl<'s, const N: usize, const M: usize, U: OwnLimits, J: Judge, const K: usize, const E: usize, const H: usize>
     Ring<ScheduledFiring<'s, N, M, U>, J, K, E, H>
 {
-    /// Changes to another schedule when the present period ends (see [`ScheduledFiring::change_schedule`]).
-    /// `t_delta`, window and what sound may do stay; where sensors have limits of their own, each keeps in the first
-    /// period after the change the lesser of both schedules.
+    /// Changes to another schedule when the present period ends (see [`ScheduledFiring::change_schedule`]). `t_delta`,
+    /// window, P and R stay. If sensors have limits of their own, each keeps the lesser of both schedules' in the first
+    /// period after the change.
     ///
     /// # Errors
     /// [`RingError::TDelta`] or [`RingError::VerifiedWindow`] if the schedule was verified for less than the ring's
@@ -103,8 +103,8 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         Ok(())
     }
 
-    /// Sets how long after its firing a reading without an echo is emitted at the soonest, for modules that report by a
-    /// bus or a pulse's width after their window has closed; 0 for the end of the window. What counts as an echo stays:
+    /// Sets the least time from a firing to a reading without an echo, for modules that report over a bus or by a
+    /// pulse's width after their window has closed; 0 for the end of the window. Echoes are not affected:
     /// [`measured`](Self::measured) takes any echo time within the window.
     ///
     /// # Errors
@@ -123,8 +123,8 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     }
 
     /// Sets the blanking time, for which a sensor is deaf after it has fired. It may be less than at the start: ringing
-    /// and a sensor's own stale echoes are edges like any other then, and no promise about foreign sound rests on being
-    /// deaf to them.
+    /// and a sensor's own stale echoes then count as edges; the promise about foreign sound does not depend on the
+    /// blanking time.
     ///
     /// # Errors
     /// [`RingError::Blanking`] for one that is no shorter than the window, or longer than 65,535 us. The ring then goes
@@ -135,7 +135,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     }
 
     /// Sets P, the largest change of a foreign sound's path from one reading to the next (see
-    /// [`RingConfig::path_change`](super::RingConfig::path_change)): as the robot's speed changes, for example.
+    /// [`RingConfig::path_change`](super::RingConfig::path_change)), for example when the robot's speed changes.
     ///
     /// # Errors
     /// [`RingError::PathChange`] for more than 65,534 us. The ring then goes on as before.
@@ -187,8 +187,8 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         self.plan.set_paused(true);
     }
 
-    /// Lets sensors fire again: as of the next period with scheduled firing, with immediate refiring at once. Readings
-    /// from before are forgotten; a judge may keep what it believes.
+    /// Lets sensors fire again: from the next period on with scheduled firing, at once with immediate refiring. Earlier
+    /// readings are forgotten; a judge may keep its beliefs.
     pub fn resume(&mut self) {
         self.plan.set_paused(false);
         // At most 64 sensors.
@@ -198,9 +198,9 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         self.disturb();
     }
 
-    /// Starts again with phase a at `now`, or as soon as the last firings allow. Firings under way are dropped,
-    /// readings from before are forgotten; ages and the count of periods go on. Restart a
-    /// [`SensorWatch`](crate::watch::SensorWatch) with it.
+    /// Starts again with phase a at `now`, or as soon as the last firings allow. Firings in progress are dropped and
+    /// earlier readings forgotten; ages and the count of periods go on. Restart a
+    /// [`SensorWatch`](crate::watch::SensorWatch) at the same time.
     pub fn restart(&mut self, now: Instant) {
         self.plan.restart(now);
         // Sound from before may still be heard, and its firings are no longer known by this clock.

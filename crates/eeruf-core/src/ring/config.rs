@@ -1,4 +1,4 @@
-//! [`RingConfig`]: how a ring listens and compares.
+//! [`RingConfig`]: the settings of a ring.
 
 use crate::filter::{Consecutive, Tolerance};
 use crate::plan::Plan;
@@ -13,11 +13,11 @@ pub enum Silence {
     /// Never free space and no fault: it stays [`NoEcho`](crate::ReadingKind::NoEcho), however often.
     #[default]
     NeverFree,
-    /// A fault, [`Unanswered`](crate::ReadingKind::Unanswered), for drivers whose sensors show that they listen, as by
-    /// a line that rises.
+    /// A fault, [`Unanswered`](crate::ReadingKind::Unanswered), for drivers whose sensors show that they listen, for
+    /// instance by a line that rises.
     NeedsAnswer,
     /// Silence counts as one with a witness: [`Clear`](crate::ReadingKind::Clear) once repeated. For simulations, and
-    /// sensors that cannot fail in silence: a cut wire is free space too.
+    /// sensors that cannot fail silently: a cut wire counts as free space.
     Trusted,
 }
 
@@ -35,30 +35,29 @@ pub enum Silence {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RingConfig<const E: usize = 1> {
-    /// `T_delta`: consecutive readings that differ by no more are near-identical. `None` for what the schedule was
-    /// verified for.
+    /// `T_delta`: the greatest difference of near-identical consecutive readings. `None` for that of the verified
+    /// schedule.
     pub t_delta: Option<Micros>,
     /// `T_wind`: how long a sensor listens after it has fired. An echo at exactly this time still counts. `None` for
-    /// what the schedule was verified for.
+    /// that of the verified schedule.
     pub window: Option<Micros>,
     /// Time after a firing in which edges are ringing of the transducer, not echoes.
     pub blanking: Micros,
     /// The number of consecutive readings that must agree, 2 to 8.
     pub consecutive: u8,
-    /// P: the largest change, in time, of the length of a foreign sound's path from one reading to the next.
-    /// Crosstalk that changes by no more is never accepted. `None` for `T_delta`, as in the paper. A robot that moves
-    /// at `v` needs its jitter and `2 v dt / c`; less than `T_delta` makes fewer readings ambiguous where firings are
-    /// late. At most 65,534 us.
+    /// P: the largest change, in time, of the length of a foreign sound's path from one reading to the next. Crosstalk
+    /// that changes by no more is never accepted. `None` for `T_delta`, as in the paper. A robot that moves at `v`
+    /// needs the jitter plus `2 v dt / c`. A value below `T_delta` makes fewer readings ambiguous if firings are late.
+    /// At most 65,534 us.
     pub path_change: Option<Micros>,
-    /// R: how long sound is audible after its firing. `None` for what the schedule was verified for, which is its
-    /// period unless more was asked for; with immediate refiring for as long as a sensor listens, or until it may fire
-    /// again. 1 ms to 67 s.
+    /// R: how long sound is audible after its firing. `None` for that of the verified schedule, its period unless more
+    /// was asked for; with immediate refiring, the listening time or the least refire time. 1 ms to 67 s.
     pub audible: Option<Micros>,
 }
 
 impl RingConfig {
-    /// The `t_delta` and window that the schedule was verified for, one echo, no blanking, and two readings compared,
-    /// as in the paper.
+    /// Settings with the `t_delta` and window that the schedule was verified for, one echo, no blanking, and two
+    /// readings compared, as in the paper.
     pub const fn new() -> Self {
         Self { t_delta: None, window: None, blanking: Micros::ZERO, consecutive: 2, path_change: None, audible: None }
     }
@@ -71,7 +70,7 @@ impl Default for RingConfig {
 }
 
 impl<const E: usize> RingConfig<E> {
-    /// The tolerance of comparison, by what the plan's schedule was verified for.
+    /// The tolerance of comparison; defaults come from the plan's verified schedule.
     pub(super) fn tolerance(&self, plan: &impl Plan) -> Result<Tolerance, RingError> {
         let verified_for = plan.limits().verified_for;
         let t_delta = self.t_delta.or(verified_for.map(|verified_for| verified_for.t_delta));
@@ -91,7 +90,7 @@ impl<const E: usize> RingConfig<E> {
         Self { window: Some(window), ..self }
     }
 
-    /// Deaf for this long after firing; shorter than the window.
+    /// Sets the blanking time, shorter than the window.
     #[must_use]
     pub const fn with_blanking(self, blanking: Micros) -> Self {
         Self { blanking, ..self }

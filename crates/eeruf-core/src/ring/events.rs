@@ -1,4 +1,4 @@
-//! [`RingEvent`]: what a ring hands to its caller.
+//! [`RingEvent`]: the events that a ring gives to its caller.
 
 use crate::reading::{Explanation, ReadingKind, Tally};
 use crate::schedule::Phase;
@@ -14,7 +14,7 @@ pub enum RingEvent {
         sensor: u8,
         /// The phase that its wait belongs to.
         phase: Phase,
-        /// Time when it was due: in the past if the poll is late.
+        /// Time when it was due: in the past if the poll was late.
         due: Instant,
     },
     /// The outcome of an earlier firing.
@@ -32,7 +32,7 @@ pub struct Reading {
     pub sensor: u8,
     /// The phase in which it fired.
     pub phase: Phase,
-    /// The period in which it fired, counted from 0; right if that was fewer than eight periods ago.
+    /// The period in which it fired, counted from 0; valid if that was fewer than eight periods ago.
     pub period: u32,
     /// The outcome of the firing.
     pub kind: ReadingKind,
@@ -46,19 +46,19 @@ pub struct Reading {
     pub explained_by: Option<Explanation>,
 }
 
-/// Statistics since the end of the period before.
+/// Statistics of one period, counted since the end of the period before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PeriodStats {
     /// The period, counted from 0.
     pub period: u32,
-    /// The phase.
+    /// The readings emitted since the previous period ended, by kind.
     pub phase: Phase,
     /// The readings emitted since the period before ended, by kind.
     pub tally: Tally<u8>,
-    /// Greatest lateness of the period's firings and its end, from due to polled, at most 65,535 us. A firing
-    /// that a reading has brought forward is due from the poll on that told of it.
+    /// Greatest lateness of the period's firings and its end, from due to polled, at most 65,535 us. If a reading
+    /// brings a firing forward, lateness counts from the poll that returned the reading.
     pub max_late: Micros,
-    /// The lateness of all its firings together, by which the timetable got longer; at most 65,535 us.
+    /// Sum of the lateness of all its firings, by which the timetable got longer; at most 65,535 us.
     pub sum_late: Micros,
 }

@@ -1,4 +1,4 @@
-//! [`Ring::fired`]: when a sensor really fired.
+//! [`Ring::fired`]: corrects the instant of a firing.
 
 use super::Ring;
 use super::sensor::LISTENING;
@@ -8,13 +8,13 @@ use crate::sensor_error::SensorError;
 use crate::time::Instant;
 
 impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, J, K, E, H> {
-    /// Corrects when a sensor last fired: by what a timer captured, for example, or after a pause that its circuit
-    /// needs. Optional: without it the `now` of the poll counts.
+    /// Corrects the instant at which a sensor last fired: for example to a time that a timer captured, or for a delay
+    /// of its circuit. Optional: without it the `now` of the poll counts.
     ///
     /// Echo times count from `at`. If it is later than the poll, the lateness of the firing grows, and all later
-    /// firings move by as much, so that no interval gets shorter. Call it before the readings that may hold the
-    /// firing's sound are polled for: an accepted reading cannot be taken back. An instant that is not after the
-    /// sensor's firing before is ignored.
+    /// firings move by as much, so that no interval gets shorter. Call it before you poll for readings that may contain
+    /// the firing's sound: an accepted reading cannot be taken back. An instant not after the sensor's previous firing
+    /// is ignored.
     ///
     /// # Errors
     /// [`SensorError`] if the sensor is out of range.

@@ -14,7 +14,7 @@
 
 use crate::time::{Instant, Micros};
 
-/// Longer ago than any sound is audible: about 18 minutes.
+/// A time longer than any sound is audible: about 18 minutes.
 const LONG_AGO: Micros = Micros::new(1 << 30);
 /// The largest step back of a clock that is not taken for a wrap: about one second.
 pub(crate) const STEP_BACK: Micros = Micros::new(1 << 20);
@@ -26,7 +26,7 @@ pub(crate) const STEP_BACK: Micros = Micros::new(1 << 20);
 pub(super) struct Firings<const H: usize>([Instant; H]);
 
 impl<const H: usize> Firings<H> {
-    /// All of them so long before `now` that nothing is heard of them.
+    /// A history without audible firings: all are long before `now`.
     pub(super) const fn none_before(now: Instant) -> Self {
         const { assert!(H > 0, "a ring remembers at least the last firing of each sensor") };
         Self([long_before(now); H])
@@ -47,7 +47,7 @@ impl<const H: usize> Firings<H> {
         }
     }
 
-    /// The last firing was at another instant.
+    /// Corrects the instant of the last firing.
     #[inline]
     pub(super) fn correct(&mut self, at: Instant) {
         if let Some(last) = self.0.first_mut() {
@@ -55,23 +55,23 @@ impl<const H: usize> Firings<H> {
         }
     }
 
-    /// The oldest that is remembered: all that is forgotten was fired before.
+    /// The oldest remembered firing: all forgotten ones came before it.
     pub(super) const fn oldest(&self) -> Instant {
         self.0[H - 1]
     }
 
-    /// The last firing, and the one `ago` firings before, unless that is forgotten.
+    /// The last firing and the one `ago` firings before it; `None` if that is forgotten.
     pub(super) fn last_and(&self, ago: u8) -> [Option<Instant>; 2] {
         const { assert!(H > 1, "a judge that asks what explains two readings; expected H >= 2, or an AgreementRing") };
         [Some(self.0[0]), self.0.get(usize::from(ago)).copied()]
     }
 
-    /// The time from the last but one to the last.
+    /// The time from the last firing but one to the last.
     pub(super) fn since_before(&self) -> Micros {
         self.0.get(1).map_or(Micros::MAX, |&before| self.last().since(before))
     }
 
-    /// Returns true if sound of any but the latest `but` of them is heard at an instant.
+    /// Returns true if sound of any firing except the latest `but` is audible at an instant.
     pub(super) fn is_heard_at(&self, at: Instant, audible: Micros, but: usize) -> bool {
         for &fired in self.0.iter().skip(but) {
             if at.has_reached(fired) {
@@ -82,13 +82,13 @@ impl<const H: usize> Firings<H> {
         false
     }
 
-    /// Returns true if an instant is later than the firing before the last one, as far as that is known.
+    /// Returns true if an instant is later than the last firing but one, as far as that is known.
     pub(super) fn may_correct(&self, at: Instant) -> bool {
         self.0.get(1).is_none_or(|&before| at != before && at.has_reached(before))
     }
 
-    /// Keeps old firings from coming round with the clock: to be called at least every four minutes. Returns whether
-    /// they are forgotten.
+    /// Forgets firings before the clock's wrap makes them look recent: call it at least every four minutes. Returns
+    /// true if it forgot them.
     #[inline]
     pub(super) fn expire(&mut self, now: Instant) -> bool {
         let expired = is_long_ago(self.last(), now);
@@ -117,7 +117,7 @@ pub(super) const fn long_before(now: Instant) -> Instant {
     Instant::from_micros(now.as_micros().wrapping_sub(LONG_AGO.as_micros()))
 }
 
-/// The instants at which a sensor heard two consecutive readings, and what sound may do.
+/// The instants at which a sensor heard two consecutive readings, and the limits of sound.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Pair {
     /// Time when the first was heard, `h1`, and the second, `h2`.
@@ -129,7 +129,7 @@ pub(super) struct Pair {
 }
 
 impl Pair {
-    /// Returns true if sound of these firings explains both readings. `own`: they are the receiver's, of which the last
+    /// Returns true if sound of these firings explains both readings. `own` marks the receiver's own firings: the last
     /// does not count for the second reading, and the one at this place not for the first.
     // Out of line, where it has all registers of a Cortex-M0 to itself.
     #[inline(never)]
@@ -160,8 +160,8 @@ impl Pair {
         false
     }
 
-    /// Widens the tolerances for echoes at times that may be off by `one` and `other`, and an echo after them by up to
-    /// `third`: each length by the greatest, the change by both of the two.
+    /// Widens the tolerances for echo times that may be off by `one` and `other`, and a later echo by up to `third`:
+    /// each length by the greatest of them, the change by the sum of the first two.
     pub(super) fn widened(self, one: Micros, other: Micros, most: Micros) -> Self {
         let change = self.path_change.saturating_add(one).saturating_add(other);
         let audible = self.audible.saturating_add(most).saturating_add(most);

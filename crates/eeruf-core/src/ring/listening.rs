@@ -1,4 +1,4 @@
-//! [`Listening`]: the listening times and tolerances of a ring; checked, also while it runs.
+//! [`Listening`]: the checked listening times and tolerances of a ring.
 
 use super::config::{RingConfig, Silence};
 use super::sensor::UNANSWERED;
@@ -7,7 +7,7 @@ use crate::reading::ReadingKind;
 use crate::ring_error::{LONGEST, MAX_AUDIBLE, PLAUSIBLE, RingError, within};
 use crate::time::{Micros, shorter};
 
-/// Window, `t_delta` and blanking time, none of them more than the plan allows, and what sound may do.
+/// Window, `t_delta` and blanking time, none of them more than the plan allows, and the limits of sound.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(C)]
@@ -16,9 +16,9 @@ pub(crate) struct Listening {
     audible: Micros,
     t_delta: u16,
     blanking: u16,
-    /// [`AS_T_DELTA`] for the receiver's `t_delta`.
+    /// Largest change of a path; [`AS_T_DELTA`] for the receiver's `t_delta`.
     path_change: u16,
-    /// The flag with which firings begin where silence counts only if the sensor has shown that it listens; else 0.
+    /// Initial flag of firings: set if silence counts only after the sensor has shown that it listens, else 0.
     unanswered: u8,
     /// The kind of silence without a witness.
     unwitnessed: ReadingKind,
@@ -42,7 +42,7 @@ impl Listening {
         Self::checked(t_delta, window, config.blanking, plan)?.with_sound(path_change, audible)
     }
 
-    /// With paths that change by so much, or by `t_delta`, and sound that is audible for so long.
+    /// Returns a copy with another change of paths (`None` for `t_delta`) and another time for which sound is audible.
     pub(crate) const fn with_sound(self, path_change: Option<Micros>, audible: Micros) -> Result<Self, RingError> {
         if audible.as_micros() > MAX_AUDIBLE.as_micros() {
             return Err(RingError::Audible { audible });
@@ -55,7 +55,7 @@ impl Listening {
         Ok(Self { audible, path_change, ..self })
     }
 
-    /// With some of it changed.
+    /// Returns a changed copy after checking it.
     pub(super) fn checked<P: Plan>(
         t_delta: Micros,
         window: Micros,
@@ -72,7 +72,7 @@ impl Listening {
         Self::of(t_delta, window, shortest, blanking)
     }
 
-    /// As they are asked for; `shortest`: the shortest window of all sensors.
+    /// Listening times as requested; `shortest` is the shortest window of all sensors.
     pub(crate) const fn of(
         t_delta: Micros,
         window: Micros,
@@ -167,7 +167,7 @@ impl Listening {
         }
     }
 
-    /// Returns true if the plan's timetable was verified for what sound may do.
+    /// Returns true if the plan's timetable was verified for the limits of sound.
     pub(super) fn is_proven(&self, plan: &impl Plan) -> bool {
         let limits = plan.limits();
         let Some(verified_for) = limits.verified_for else { return false };
@@ -180,8 +180,8 @@ impl Listening {
             && two_periods < plan.min_refire()
     }
 
-    /// Lateness that the firings of one period may have together so that crosstalk still moves by more than it must: a
-    /// quarter of what is to spare, as no two readings hear more than four periods.
+    /// Total lateness that the firings of one period may have while crosstalk still moves far enough: a quarter of the
+    /// margin, since two readings span at most four periods.
     pub(super) fn spare(&self, limits: PlanLimits<'_>) -> u16 {
         let Some(verified_for) = limits.verified_for else { return 0 };
         let change = self.asked_path_change().unwrap_or(self.t_delta());

@@ -1,7 +1,7 @@
 //! [`Ring`]: plan and judge together, with what real sensors need: blanking, windows, stuck lines, late polls.
 //!
-//! The caller polls, fires the sensors it is asked to fire, hands in the instants of echo edges, and sleeps until the
-//! next deadline. Nothing here blocks, allocates, panics or reads a clock. The room uses plans and judges.
+//! The caller polls, fires the sensors that the ring asks for, reports the instants of echo edges, and sleeps until the
+//! next deadline. Nothing here blocks, allocates, panics or reads a clock.
 
 mod changes;
 mod config;
@@ -33,15 +33,16 @@ use sensor::{HELD, Noted, STUCK, Sensor, UNANSWERED};
 pub use config::{RingConfig, Silence};
 pub use events::{PeriodStats, Reading, RingEvent};
 
-/// A ring of up to `K` sensors: the [`Plan`] `P` decides when each fires, and the [`Judge`] `J` what each reading is
-/// worth. `E` is the number of echoes that a sensor reports of one firing.
+/// A ring of up to `K` sensors: the [`Plan`] `P` decides when each fires, and the [`Judge`] `J` which readings to
+/// accept. `E` is the number of echoes that a sensor reports of one firing.
 ///
 /// With an [`EchoFilter`] a reading is accepted if it is near-identical to the one before (Eq. 11) and no firing
-/// explains both as crosstalk; where one does, the reading is [`Ambiguous`](ReadingKind::Ambiguous). That holds by what
-/// was fired, not by what was planned: late polls, pauses, restarts, changes of schedule and sensors that are disabled
-/// or enabled may cost readings, but no single path of foreign sound that is audible for no longer than
-/// [`RingConfig::audible`] and changes by no more than [`RingConfig::path_change`] is ever accepted. On time a verified
-/// schedule has no ambiguous readings. `docs/explanation/theory.md` section 2.1 has the proof and its limits.
+/// explains both as crosstalk; if one does, the reading is [`Ambiguous`](ReadingKind::Ambiguous). The ring judges by
+/// actual firings, not by the plan: late polls, pauses, restarts, changes of schedule and sensors that are disabled or
+/// enabled may cost readings, but no single path of foreign sound that is audible for no longer than
+/// [`RingConfig::audible`] and changes by no more than [`RingConfig::path_change`] is ever accepted. While it is on
+/// time, a verified schedule has no ambiguous readings. `docs/explanation/theory.md` section 2.1 has the proof and its
+/// limits.
 ///
 /// `H` is the number of firings that are remembered of each sensor, 4 bytes each. A reading that sound of a forgotten
 /// one might explain is ambiguous too; four suffice if sound is audible for no longer than a period. A judge that asks
@@ -82,19 +83,19 @@ pub use events::{PeriodStats, Reading, RingEvent};
 pub struct Ring<P, J, const K: usize, const E: usize = 1, const H: usize = 4> {
     /// The sensor whose window closes first, or [`NOBODY`].
     oldest: u8,
-    /// Number of sensors that have a reading to emit before their window closes.
+    /// Number of sensors whose reading can be emitted before their window closes.
     ready: u8,
-    /// The last of them to get it, or a sensor that has emitted it since.
+    /// The last sensor to join them; it may have emitted its reading since.
     last_ready: u8,
     /// Number of sensors that listen.
     listening_now: u8,
-    /// Time when the next reading can be emitted: when an edge came, or when the window of the oldest closes.
+    /// Time when the next reading can be emitted: when an edge came, or when the window of the oldest sensor closes.
     emit_at: Instant,
     listening: Listening,
     period: u32,
     plan: P,
     punctuality: Punctuality,
-    /// Firings before this are not known: the ring was restarted.
+    /// Instant before which firings are unknown because the ring was restarted.
     known_from: Instant,
     /// Shortest time from a firing to a reading without an echo.
     report_after: Micros,
@@ -108,8 +109,8 @@ pub struct Ring<P, J, const K: usize, const E: usize = 1, const H: usize = 4> {
 pub type ScheduledRing<'s, const K: usize, const E: usize = 1, U = ()> =
     Ring<ScheduledFiring<'s, K, 2, U>, EchoFilter<K, E>, K, E>;
 
-/// A [`Ring`] that accepts each reading that agrees with the one before, whoever else's sound explains both: a
-/// baseline. Where crosstalk repeats, as with constant waits, it is accepted.
+/// A [`Ring`] that accepts each reading that agrees with the one before, even if foreign sound explains both: a
+/// baseline. It accepts crosstalk that repeats, as with constant waits.
 pub type AgreementRing<P, const K: usize, const E: usize = 1> = Ring<P, Agreement<EchoFilter<K, E>>, K, E, 1>;
 
 const NOBODY: u8 = u8::MAX;
@@ -117,9 +118,9 @@ const NOBODY: u8 = u8::MAX;
 impl<'s, const K: usize, const M: usize, U: OwnLimits, const E: usize>
     Ring<ScheduledFiring<'s, K, M, U>, EchoFilter<K, E>, K, E>
 {
-    /// A ring with scheduled firing that begins at `now`. It listens and compares as the schedule was verified for,
-    /// unless `config` asks for less. Where sensors have limits of their own each keeps them, and what `config` says is
-    /// the most for all.
+    /// A ring with scheduled firing that begins at `now`. It uses the window and `t_delta` that the schedule was
+    /// verified for, unless `config` asks for less. Sensors keep limits of their own, if they have them; `config` then
+    /// sets upper limits for all.
     ///
     /// # Errors
     /// As for [`Ring::with_plan`].
@@ -134,8 +135,8 @@ impl<'s, const K: usize, const M: usize, U: OwnLimits, const E: usize>
 
 impl<'s, const K: usize, const M: usize, const E: usize> Ring<ScheduledFiring<'s, K, M>, EchoFilter<K, E>, K, E> {
     /// Makes a ring like [`new`](Ring::new), by a schedule that was not verified; `config` needs `t_delta` and window.
-    /// Crosstalk is not accepted either, but readings that it could explain are ambiguous: with constant waits nearly
-    /// all.
+    /// It accepts no crosstalk either, but readings that crosstalk could explain are ambiguous: with constant waits
+    /// nearly all.
     ///
     /// # Errors
     /// As for [`Ring::with_plan`].
@@ -170,8 +171,8 @@ impl<'s, const K: usize, const M: usize, const E: usize> Ring<ImmediateRefiring<
 }
 
 impl<P: Plan, const K: usize, const E: usize> Ring<P, EchoFilter<K, E>, K, E> {
-    /// A ring with the caller's own plan, which remembers four firings of each sensor. Where its schedule was verified,
-    /// it listens and compares as it was verified for, unless `config` asks for less.
+    /// A ring with the caller's own plan, which remembers four firings of each sensor. If its schedule was verified,
+    /// the ring uses that window and `t_delta`, unless `config` asks for less.
     ///
     /// # Errors
     /// As for [`Ring::remembering`].
@@ -185,7 +186,7 @@ impl<P: Plan, const K: usize, const E: usize, const H: usize> Ring<P, EchoFilter
     ///
     /// # Errors
     /// As for [`Ring::judged_by`]; also if the number of consecutive readings is not 2 to 8, or if neither `config` nor
-    /// the schedule says `t_delta`.
+    /// the schedule gives `t_delta`.
     pub fn remembering(plan: P, config: RingConfig<E>, now: Instant) -> Result<Self, RingError> {
         let tolerance = config.tolerance(&plan)?;
         Self::judged_by(plan, EchoFilter::of(tolerance), config, now)
@@ -193,7 +194,7 @@ impl<P: Plan, const K: usize, const E: usize, const H: usize> Ring<P, EchoFilter
 }
 
 impl<P: Plan, const K: usize, const E: usize> AgreementRing<P, K, E> {
-    /// A ring that accepts what agrees, for baselines.
+    /// A ring that accepts every reading that agrees with the one before, for baselines.
     ///
     /// # Errors
     /// As for [`Ring::remembering`].
@@ -204,11 +205,10 @@ impl<P: Plan, const K: usize, const E: usize> AgreementRing<P, K, E> {
 }
 
 impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, J, K, E, H> {
-    /// Copied from flash: an array made at run time would first be built on the stack.
+    /// Initial state, copied from flash: an array made at run time would first be built on the stack.
     const SENSORS: [Sensor<E, H>; K] = [Sensor::new(Instant::from_micros(0)); K];
 
-    /// A ring in which nothing has fired. As if silence had come before: what was fired earlier is for the caller to
-    /// wait for.
+    /// A ring in which nothing has fired. It assumes silence before: the caller must wait until earlier sound has died.
     #[inline(always)]
     pub(crate) const fn begin(plan: P, judge: J, listening: Listening, proven: bool, now: Instant) -> Self {
         let mut ring = Self {
@@ -236,8 +236,8 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         ring
     }
 
-    /// A ring with the caller's own plan and judge, which remembers `H` firings of each sensor. How readings are
-    /// compared is the judge's: of `config` only how the ring listens counts.
+    /// A ring with the caller's own plan and judge, which remembers `H` firings of each sensor. The judge decides how
+    /// readings are compared: of `config` only the listening settings are used.
     ///
     /// # Errors
     /// [`RingError`] if judge or `config` ask for more than the schedule was verified for, or `config` does not say the
@@ -261,7 +261,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     /// [`next_deadline`](Self::next_deadline).
     ///
     /// Hand in the echo edges you know of before you poll: an edge that comes after the poll that closed its window is
-    /// lost. A late poll loses nothing: firings that are due are postponed, and all later ones with them. Where that
+    /// lost. A late poll loses nothing: firings that are due are postponed, and all later ones with them. If that
     /// shifts crosstalk so that it could explain a reading, the reading is [`Ambiguous`](ReadingKind::Ambiguous).
     /// [`PeriodStats`] says how late firings were.
     #[inline]
@@ -269,11 +269,10 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         self.poll_expecting(now, |_| 0)
     }
 
-    /// Polls like [`poll`](Self::poll), for a robot that moves: `expected_change_us` is asked for the change in
-    /// microseconds that a good reading of a sensor should show since its firing before (see
-    /// [`EchoFilter::push_echoes`]). Readings for which it is not 0 are asked about on time too, and some walls of a
-    /// fast robot are [`Ambiguous`](ReadingKind::Ambiguous): it accepts no more crosstalk, and does not let the robot
-    /// drive faster.
+    /// Polls like [`poll`](Self::poll), for a robot that moves: `expected_change_us` returns the change in microseconds
+    /// that a good reading of a sensor should show since its previous firing (see [`EchoFilter::push_echoes`]). If it
+    /// is not 0, readings are checked for explanations even on time, and some walls of a fast robot are
+    /// [`Ambiguous`](ReadingKind::Ambiguous): it accepts no more crosstalk, and does not let the robot drive faster.
     ///
     /// [`EchoFilter::push_echoes`]: crate::EchoFilter::push_echoes
     #[inline]
@@ -293,24 +292,25 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         now.has_reached(self.plan.deadline()) || (self.has_pending() && now.has_reached(self.emit_at))
     }
 
-    /// Returns true if the clock must have jumped, since what is next is too far ahead.
+    /// Returns true if the clock must have jumped, because the next step is too far ahead.
     #[inline(always)]
     fn has_jumped(&self, now: Instant) -> bool {
         self.plan.deadline().since(now) > self.plan.horizon()
     }
 
-    /// Returns the time to poll next. In the past if an event is pending.
+    /// Returns the time of the next poll; in the past if an event is pending.
     pub fn next_deadline(&self) -> Instant {
         let due = self.plan.deadline();
         if self.has_pending() && !self.emit_at.has_reached(due) { self.emit_at } else { due }
     }
 
-    /// The firings to come, in their order, for hardware that fires by itself: a timer, PIO or RMT. They hold until one
-    /// is late, or the ring is changed. By a table they reach to the end of the next period, else of the present one.
+    /// The firings to come, in their order, for hardware that fires by itself: a timer, PIO or RMT. They are valid
+    /// until one is late or the ring is changed. With a table they reach to the end of the next period, otherwise to
+    /// that of the present one.
     ///
-    /// The loop may then come late. Let it repeat what happened in its order: for each firing poll at its instant until
-    /// there is no event, so that [`RingEvent::Fire`] says what is done already; hand in echoes; last poll at the
-    /// present. A firing that hardware has missed is then still due.
+    /// The loop may then come late. Replay what happened in order: for each firing, poll at its instant until there is
+    /// no event ([`RingEvent::Fire`] then reports a firing that is already done) and report its echoes; finally poll at
+    /// the present. A firing that hardware has missed is then still due.
     ///
     /// ```
     /// use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, tables::PAPER_12};
@@ -338,14 +338,14 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         self.plan.upcoming()
     }
 
-    /// Returns true if a reading will be emitted without a further firing.
+    /// Returns true if a reading will be emitted without another firing.
     #[inline]
     fn has_pending(&self) -> bool {
         self.ready > 0 || self.oldest != NOBODY
     }
 
-    /// An edge on the echo line of a sensor, `at` this instant. Cheap; edges may come in any order, at any time, from
-    /// any sensor, wanted or not.
+    /// Reports an edge on the echo line of a sensor, `at` this instant. The call is cheap; edges may come in any order,
+    /// at any time and from any sensor.
     ///
     /// # Errors
     /// [`SensorError`] for a sensor out of range.
@@ -354,10 +354,10 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         self.hear(sensor, at, Micros::ZERO, at)
     }
 
-    /// Notes an echo like [`echo`](Self::echo), of an edge that came between two instants: the line was last seen
-    /// without it at `earliest`, and with it at `latest`. The middle counts, and half the width is by how much it may
-    /// be off: foreign sound heard at any time in between explains the reading. More than 300 us, 5 cm, say too little:
-    /// the reading is [`Late`](ReadingKind::Late), without echo time.
+    /// Reports an edge like [`echo`](Self::echo) that came between two instants: the line was last seen without it at
+    /// `earliest`, and with it at `latest`. The middle counts, with half the width as its uncertainty: foreign sound
+    /// heard at any time in between explains the reading. If the uncertainty exceeds 300 us (5 cm), the reading is
+    /// [`Late`](ReadingKind::Late), without echo time.
     ///
     /// # Errors
     /// [`RingError::Interval`] if `latest` is before `earliest`, [`RingError::Sensor`] for a sensor out of range.
@@ -369,8 +369,9 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         Ok(self.echo_within(sensor, earliest, latest.since(earliest), latest)?)
     }
 
-    /// Notes an echo like [`echo_between`](Self::echo_between), of an edge that came up to `width` after `earliest`,
-    /// for drivers that may take it back: its reading is emitted no sooner than `settled`, unless another sensor's is.
+    /// Reports an edge like [`echo_between`](Self::echo_between) that came up to `width` after `earliest`, for drivers
+    /// that may take it back: its reading is emitted at `settled` or later, unless another sensor's reading is emitted
+    /// first.
     ///
     /// # Errors
     /// [`SensorError`] for a sensor out of range.
@@ -385,8 +386,8 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         self.hear(sensor, earliest + Micros::new(before), Micros::new(width.as_micros() - before), settled)
     }
 
-    /// Notes an echo like [`echo`](Self::echo), for drivers that may take it back: its reading is emitted no sooner
-    /// than `settled`, unless another sensor's is.
+    /// Reports an edge like [`echo`](Self::echo), for drivers that may take it back: its reading is emitted at
+    /// `settled` or later, unless another sensor's reading is emitted first.
     ///
     /// # Errors
     /// As there.
@@ -427,15 +428,15 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         Ok(())
     }
 
-    /// Sets what silence means, from the next firing on; [`Silence::NeverFree`] at the start.
+    /// Sets the meaning of silence from the next firing on; initially [`Silence::NeverFree`].
     pub fn set_silence(&mut self, silence: Silence) {
         self.listening.set_silence(silence);
     }
 
-    /// Reports that a sensor holds its line: it rose after the trigger, or was not triggered since it is still high.
-    /// Its silence counts once the line has fallen, by [`answered`](Self::answered). Until then its readings are what
-    /// the judge says already: [`Clear`](ReadingKind::Clear), or else [`NoEcho`](ReadingKind::NoEcho). They neither add
-    /// to a run of silences nor break it.
+    /// Reports that a sensor holds its line: the line rose after the trigger, or was still high, so that the sensor was
+    /// not triggered. Its silence counts once the line has fallen, by [`answered`](Self::answered). Until then its
+    /// readings repeat the judge's last word: [`Clear`](ReadingKind::Clear), or else [`NoEcho`](ReadingKind::NoEcho).
+    /// They neither add to a run of silences nor break it.
     ///
     /// # Errors
     /// [`SensorError`] for a sensor out of range.
@@ -444,8 +445,8 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         Ok(())
     }
 
-    /// Reports that a sensor has shown that it listened for the echo of its last firing. Where its reading is out, and
-    /// it [held](Self::holds) its line then, the judge learns of that silence now.
+    /// Reports that a sensor has shown that it listened for the echo of its last firing. If its reading was emitted
+    /// while it [held](Self::holds) its line, the judge learns of that silence now.
     ///
     /// # Errors
     /// [`SensorError`] for a sensor out of range.
@@ -456,7 +457,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         Ok(())
     }
 
-    /// Hands the judge a silence whose reading is out.
+    /// Gives the judge a silence whose reading was already emitted.
     #[cold]
     fn judge_silence(&mut self, sensor: u8) {
         let Some(own) = self.sensors.get(usize::from(sensor)) else { return };
@@ -468,7 +469,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         self.plan.judged(&heard, &verdict, &self.judge);
     }
 
-    /// Takes back [`answered`](Self::answered): what looked like an answer was a disturbance.
+    /// Takes back [`answered`](Self::answered), if the answer was a disturbance.
     ///
     /// # Errors
     /// [`SensorError`] for a sensor out of range.
@@ -477,8 +478,9 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         Ok(())
     }
 
-    /// Hands in what hardware or a protocol measured of a sensor's last firing, before its reading is emitted: the echo
-    /// time, or that it listened and heard nothing. See [`set_report_after`](Self::set_report_after).
+    /// Reports the result of a sensor's last firing that hardware or a protocol measured, before its reading is
+    /// emitted: the echo time, or `None` if it listened and heard nothing. See
+    /// [`set_report_after`](Self::set_report_after).
     ///
     /// # Errors
     /// [`SensorError`] for a sensor out of range.
@@ -490,9 +492,9 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         }
     }
 
-    /// Notes an echo like [`measured`](Self::measured), of an echo time between two: a pulse whose rise and fall are
-    /// uncertain, for example, is as long as from the latest rise to the earliest fall, or up to the converse. See
-    /// [`echo_between`](Self::echo_between).
+    /// Reports a result like [`measured`](Self::measured), with an echo time between two: a pulse whose rise and fall
+    /// are uncertain, for example, lasts at least from the latest rise to the earliest fall, and at most the converse.
+    /// See [`echo_between`](Self::echo_between).
     ///
     /// # Errors
     /// As there.
@@ -505,7 +507,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         Ok(self.echo_within(sensor, fired + least, width, fired + most)?)
     }
 
-    /// Takes back the echo of a sensor whose reading has not been emitted yet: it was none. See
+    /// Takes back a false echo of a sensor whose reading has not been emitted yet. See
     /// [`echo_until`](Self::echo_until).
     ///
     /// # Errors
@@ -519,7 +521,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     }
 
     /// Forgets the readings of a sensor, so that its next one is compared with nothing: for a driver that learns that
-    /// the last one was not what it seemed. The age goes on.
+    /// the last one was false. The age keeps counting.
     ///
     /// # Errors
     /// [`SensorError`] for a sensor out of range.
@@ -535,7 +537,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         self.plan.is_enabled(sensor)
     }
 
-    /// `T_delta`: consecutive readings that differ by no more are near-identical. Where sensors have their own, the
+    /// `T_delta`: the greatest difference of near-identical consecutive readings. If sensors have their own, the
     /// largest: see [`t_delta_of`](Self::t_delta_of).
     pub const fn t_delta(&self) -> Micros {
         self.listening.t_delta()
@@ -546,7 +548,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         self.listening.t_delta_of(&self.plan, sensor)
     }
 
-    /// `T_wind`: how long a sensor listens after it has fired. Where sensors have their own, the longest: see
+    /// `T_wind`: how long a sensor listens after it has fired. If sensors have their own, the longest: see
     /// [`window_of`](Self::window_of).
     pub const fn window(&self) -> Micros {
         self.listening.window()
@@ -568,13 +570,13 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         self.listening.audible()
     }
 
-    /// Shortest time from a firing to a reading of it without an echo; 0 for the end of its window.
+    /// Least time from a firing to a reading without an echo; 0 for the end of its window.
     pub const fn report_after(&self) -> Micros {
         self.report_after
     }
 
-    /// Returns true while all firings that could be heard in a sensor's last three readings kept a timetable that was
-    /// verified for what the ring asks for, so that crosstalk moves as (13a), (13b) say.
+    /// Returns true while all firings audible in a sensor's last three readings kept a timetable that was verified for
+    /// the ring's settings, so that crosstalk moves as (13a), (13b) say.
     pub const fn is_on_time(&self) -> bool {
         self.punctuality.is_on_time()
     }
@@ -589,7 +591,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         self.plan.sensors()
     }
 
-    /// The error is made out of line, since it is rare and takes more instructions than all else.
+    /// Makes the error out of line, since it is rare and takes more instructions than the rest.
     #[cold]
     #[inline(never)]
     fn no_such(&self, sensor: u8) -> Result<(), SensorError> {
@@ -615,8 +617,8 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         &self.judge
     }
 
-    /// Says how fast the robot moves and turns, once a control cycle: a judge may allow its readings to change by as
-    /// much. Where the ring has a top speed it holds after half a second without a word.
+    /// Reports how fast the robot moves and turns; call it once a control cycle. A judge may allow its readings to
+    /// change by as much. After half a second without a call, the ring's top speed, if any, is assumed.
     pub fn moving(&mut self, speed_mm_s: u32, turn_mrad_s: u32, now: Instant) {
         self.judge.moving(speed_mm_s, turn_mrad_s, now);
         let due = self.plan.deadline();
@@ -624,20 +626,21 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         self.brought_forward(due, now);
     }
 
-    /// Returns true if sensors have limits of their own, so that the one that fired first need not be the first to end.
+    /// Returns true if sensors have windows of their own, so that the one that fired first need not be the first to
+    /// end.
     #[inline]
     fn windows_differ(&self) -> bool {
         self.plan.limits_of(0).is_some()
     }
 
-    /// Returns the time when a sensor last fired, as [`fired`](Self::fired) corrected it; an instant that nothing is
-    /// heard from if it has not yet. `None` for a sensor out of range.
+    /// Returns the time when a sensor last fired, as [`fired`](Self::fired) corrected it; if it has not fired yet, an
+    /// instant too long ago to be heard. `None` for a sensor out of range.
     pub fn last_firing(&self, sensor: u8) -> Option<Instant> {
         let there = usize::from(sensor) < self.sensors();
         self.sensors.get(usize::from(sensor)).filter(|_| there).map(Sensor::fired)
     }
 
-    /// The clock has jumped.
+    /// Handles a jump of the clock.
     #[cold]
     fn clock_jumped(&mut self, now: Instant) {
         self.restart(now);

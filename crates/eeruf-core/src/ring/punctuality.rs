@@ -1,23 +1,23 @@
-//! [`Punctuality`]: whether all firings that may still be heard kept a verified timetable.
+//! [`Punctuality`]: tracks if all firings that may still be heard kept a verified timetable.
 //!
-//! While they did, (13a) and (13b) say what [`Sounds`](super::history::Sounds) would find, and a ring need not ask. A
-//! late firing delays all that follow, so the time between two firings is off by at most the sum of lateness in
-//! between; a verified schedule has some of that to spare.
+//! While they did, (13a) and (13b) hold, and a ring need not look for explanations. A late firing delays all that
+//! follow, so the time between two firings is off by at most the sum of lateness in between; a verified schedule
+//! tolerates some lateness.
 
-/// For this many ends of periods an irregularity is remembered: the first of three readings, which a filter over three
-/// may compare, was fired three periods ago, and sound is audible for two.
+/// Number of ends of periods for which an irregularity is remembered: the first of three readings, which a filter over
+/// three may compare, was fired three periods ago, and sound is audible for two.
 const WATCHED: u8 = 6;
-/// Nothing is proven of the timetable, so that each reading is asked about.
+/// Marker of an unproven timetable, with which each reading is checked.
 const ALWAYS: u8 = u8::MAX;
 
-/// Lateness of firings, and whether it matters yet.
+/// Lateness of firings, and for how long it still matters.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(C)]
 pub(super) struct Punctuality {
-    /// At how many more ends of periods something irregular can still be heard; 0 while all is on time.
+    /// Number of further ends of periods for which something irregular can be heard; 0 while all is on time.
     watched: u8,
-    /// The latest step of this period.
+    /// Greatest lateness of a step in this period.
     latest: u16,
     /// The sum of this period's lateness; stops at 65,535 us.
     sum: u16,
@@ -31,7 +31,7 @@ pub(super) struct PeriodLateness {
 }
 
 impl Punctuality {
-    /// Nothing has fired yet. `proven`: whether the timetable was verified for what the ring asks for.
+    /// State before the first firing. `proven` is true if the timetable was verified for the ring's settings.
     pub(super) const fn new(proven: bool) -> Self {
         Self { watched: if proven { 0 } else { ALWAYS }, latest: 0, sum: 0 }
     }
@@ -42,17 +42,17 @@ impl Punctuality {
         self.watched == 0
     }
 
-    /// Something irregular happened. `proven` as for [`new`](Self::new).
+    /// Notes an irregularity. `proven` as for [`new`](Self::new).
     pub(super) fn disturb(&mut self, proven: bool) {
         self.watched = if proven { WATCHED } else { ALWAYS };
     }
 
-    /// A step was polled for late.
+    /// Notes the lateness of a step.
     pub(super) fn note(&mut self, late: u16) {
         self.latest = self.latest.max(late);
     }
 
-    /// A firing came late. Returns whether this period's firings together were late by more than is to spare.
+    /// Adds the lateness of a firing. Returns true if this period's firings together exceed the margin.
     pub(super) fn add(&mut self, late: u16, spare: u16) -> bool {
         self.sum = self.sum.saturating_add(late);
         self.sum > spare

@@ -1,29 +1,29 @@
-//! A ring's state of one of its sensors.
+//! The state of one sensor of a ring.
 
 use super::history::Firings;
 use crate::filter::{NO_ECHO, insert, shift};
 use crate::reading::ReadingKind;
 use crate::time::{Instant, Micros};
 
-/// The state of one sensor between its firing and its next: 24 bytes where it reports one echo and four firings are
-/// remembered. What its readings are worth, the judge knows.
+/// The state of one sensor between its firing and its next: 24 bytes with one echo and four remembered firings. The
+/// judge keeps the sensor's readings.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(super) struct Sensor<const E: usize, const H: usize> {
     pub(super) firings: Firings<H>,
-    /// The echoes of the present firing; also, in the first place, the time of an early or late edge.
+    /// The echoes of the present firing; an early or late edge is stored in the first place.
     echoes: [Micros; E],
     flags: u8,
-    /// The times by which the echoes of the present firing, of the one before and of all earlier ones may be off, in
-    /// units of [`UNIT`]: the most of each; or [`WIDE`].
+    /// Uncertainty of the echoes of the present firing, of the one before and of all earlier ones, in units of
+    /// [`UNIT`]: the greatest of each; or [`WIDE`].
     uncertain: [u8; 3],
 }
 
-/// Uncertainty is kept in units of 2 us.
+/// Unit of uncertainty: 2 us.
 const UNIT: u32 = 2;
-/// The most by which an echo time may be off: 5 cm.
+/// The greatest uncertainty of an echo time: 5 cm.
 const MOST: Micros = Micros::new(300);
-/// An edge of the present firing came within too wide an interval.
+/// Marker of an edge of the present firing that came within too wide an interval.
 const WIDE: u8 = u8::MAX;
 
 // The flags of a sensor, beside the period in which it fired, modulo 8.
@@ -32,15 +32,15 @@ const PERIOD: u8 = 0b111;
 pub(super) const LISTENING: u8 = 1 << 3;
 /// The sensor has a reading that can be emitted before its window closes.
 pub(super) const READY: u8 = 1 << 4;
-/// The only edges so far came outside the window: within the blanking time while it listens, late after its reading. A
-/// sensor that has not fired counts as having had its late edge, so that none is emitted for it.
+/// All edges so far came outside the window: within the blanking time, or late after the reading. A sensor that has not
+/// fired has this flag, so that no late edge is emitted for it.
 const OUTSIDE: u8 = 1 << 5;
 // Two bits of evidence: none of them where it is complete.
 /// The driver found the line stuck.
 pub(super) const STUCK: u8 = 1 << 6;
-/// Nothing has shown yet that it listens: silence says nothing.
+/// Nothing has shown yet that the sensor listens: its silence says nothing.
 pub(super) const UNANSWERED: u8 = 1 << 7;
-/// The sensor holds its line: silence counts when that has fallen. Kept after its reading.
+/// The sensor holds its line: silence counts once the line has fallen. The flag outlasts the reading.
 pub(super) const HELD: u8 = STUCK | UNANSWERED;
 
 /// The outcome of an edge.
@@ -51,12 +51,12 @@ pub(super) enum Noted {
     Late,
     /// The edge is stored with the others of its firing.
     Stored,
-    /// Nothing listens for it.
+    /// No sensor listens for the edge.
     Unwanted,
 }
 
 impl<const E: usize, const H: usize> Sensor<E, H> {
-    /// One that has not fired by `now`.
+    /// State of a sensor that has not fired by `now`.
     pub(super) const fn new(now: Instant) -> Self {
         Self { firings: Firings::none_before(now), echoes: [NO_ECHO; E], flags: OUTSIDE, uncertain: [0; 3] }
     }
@@ -83,14 +83,14 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
         self.flags & HELD
     }
 
-    /// Takes in the evidence of the present firing, if there is one. A line that was stuck says nothing more.
+    /// Notes evidence about the present firing, if there is one. A line that was stuck is no evidence.
     pub(super) fn shows(&mut self, evidence: u8) {
         if self.is(LISTENING) && self.evidence() != STUCK {
             self.flags = self.flags & !HELD | evidence;
         }
     }
 
-    /// Evidence is complete. Returns true if the reading is out and its silence counts only now.
+    /// Notes that the evidence is complete. Returns true if the reading was emitted and its silence counts only now.
     pub(super) fn answered(&mut self) -> bool {
         let (evidence, is_out) = (self.evidence(), !self.is(LISTENING));
         if evidence != STUCK {
@@ -99,7 +99,7 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
         is_out && evidence == HELD
     }
 
-    /// Number of periods ago it fired, if fewer than eight.
+    /// Number of periods since it fired, if fewer than eight.
     pub(super) const fn periods_ago(&self, period: u32) -> u8 {
         (period as u8).wrapping_sub(self.flags) & PERIOD
     }
@@ -110,8 +110,8 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
         self.firings.push(now);
     }
 
-    /// The last firing was at another instant: the echoes that were measured from it change by as much. Returns by how
-    /// many microseconds it was later.
+    /// Corrects the instant of the last firing, and with it the echoes measured from there. Returns by how many
+    /// microseconds it was later.
     pub(super) fn correct(&mut self, at: Instant) -> i32 {
         let later_us = at.since(self.fired()).as_micros() as i32;
         self.firings.correct(at);
@@ -122,7 +122,7 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
         later_us
     }
 
-    /// Forgets firings that are so long ago that no edge is an echo of them. Returns true if they are forgotten.
+    /// Forgets firings so old that no edge can be their echo. Returns true if it forgot them.
     #[inline]
     pub(super) fn expire(&mut self, now: Instant) -> bool {
         let expired = self.firings.expire(now);
@@ -140,7 +140,7 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
         (self.flags, self.uncertain) = (OUTSIDE, [0; 3]);
     }
 
-    /// An edge `at` an instant, at most `off` sooner or later.
+    /// Stores an edge `at` an instant, at most `off` sooner or later.
     pub(super) fn echo(&mut self, at: Instant, off: Micros, blanking: Micros, window: Micros) -> Noted {
         if off > MOST {
             return self.wide_echo(at, off, blanking, window);
@@ -180,7 +180,7 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
         self.be_uncertain(off.as_micros().div_ceil(UNIT) as u8)
     }
 
-    /// The present firing has an edge; its echoes may be off by as much.
+    /// Raises the uncertainty of the present firing's echoes to this.
     fn be_uncertain(&mut self, units: u8) -> Noted {
         let [now, ..] = &mut self.uncertain;
         *now = units.max(*now);
@@ -191,7 +191,7 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
         Noted::Ready
     }
 
-    /// An edge that says too little about the echo time: without an echo before it the firing has none.
+    /// Handles an edge that says too little about the echo time: without an earlier echo the firing has none.
     #[cold]
     fn wide_echo(&mut self, at: Instant, off: Micros, blanking: Micros, window: Micros) -> Noted {
         let us = |time: Micros| i64::from(time.as_micros());
@@ -229,13 +229,13 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
         }
     }
 
-    /// The first edge held, of whatever kind.
+    /// The first stored edge, of any kind.
     pub(super) fn held(&self) -> Option<Micros> {
         self.echoes.first().copied().filter(|&echo| echo != NO_ECHO)
     }
 
-    /// Ends the firing; of one that has ended already, takes the late edge. `unwitnessed`: the kind of silence without
-    /// a witness.
+    /// Ends the firing; if it has already ended, takes the late edge. `unwitnessed` is the kind of silence without a
+    /// witness.
     #[inline]
     pub(super) fn end(&mut self, unwitnessed: ReadingKind) -> Ended<E> {
         let echoes = core::mem::replace(&mut self.echoes, [NO_ECHO; E]);
@@ -268,7 +268,7 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
     }
 }
 
-/// The times by which echoes may be off, of what [`Ended`] says.
+/// Uncertainty of the echoes that [`Ended`] holds.
 pub(super) fn off_by(uncertain: [u8; 3]) -> [Micros; 3] {
     uncertain.map(|units| Micros::new(u32::from(units) * UNIT))
 }
@@ -277,11 +277,11 @@ pub(super) fn off_by(uncertain: [u8; 3]) -> [Micros; 3] {
 pub(super) struct Ended<const E: usize> {
     pub(super) listened: bool,
     pub(super) was_ready: bool,
-    /// The silence counts when its line has fallen; of a late edge, with it.
+    /// True if the silence counts only when the line has fallen; for a late edge, with it.
     pub(super) is_held: bool,
-    /// Reason why it says nothing about the echo time, if it does not.
+    /// Reason why the firing says nothing about the echo time, if it does not.
     pub(super) unusable: Option<ReadingKind>,
     pub(super) echoes: [Micros; E],
-    /// The times by which they, those of the firing before and those of all earlier ones may be off.
+    /// Uncertainty of these echoes, of those of the firing before, and of all earlier ones.
     pub(super) uncertain: [u8; 3],
 }

@@ -12,8 +12,8 @@ use crate::reading::{Explanation, ReadingKind, Verdict};
 use crate::time::{Instant, Micros};
 
 impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, J, K, E, H> {
-    /// Something is due. Firing comes first, since it should be on time; but the reading of a sensor is emitted before
-    /// the sensor fires again.
+    /// Takes the step that is due. Firing comes first, since it should be on time; but a sensor's reading is emitted
+    /// before the sensor fires again.
     #[inline]
     pub(super) fn advance(&mut self, now: Instant, expected_change_us: impl FnMut(u8) -> i32) -> Option<RingEvent> {
         let first = match self.fire_due(now) {
@@ -31,8 +31,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         }
     }
 
-    /// Fires the sensor that is due. `Err` if none is to fire, with the sensor that has a reading to emit before it
-    /// fires.
+    /// Fires the sensor that is due. `Err` if none is, with the sensor whose reading must be emitted before it fires.
     #[inline(always)]
     fn fire_due(&mut self, now: Instant) -> Result<RingEvent, Option<u8>> {
         let due = self.plan.deadline();
@@ -77,14 +76,14 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         }
     }
 
-    /// Firings no longer keep the timetable that was verified, or it is another one.
+    /// Notes that firings no longer keep the verified timetable, or that the timetable changed.
     #[cold]
     #[inline(never)]
     pub(super) fn disturb(&mut self) {
         self.punctuality.disturb(self.listening.is_proven(&self.plan));
     }
 
-    /// The next firing was due at an instant, and may be due sooner since `now`.
+    /// Notes that the next firing, due at an instant, may be due sooner since `now`.
     pub(super) fn brought_forward(&mut self, due: Instant, now: Instant) {
         self.plan.due_from(if now.has_reached(due) { due } else { now });
     }
@@ -129,7 +128,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         Some(RingEvent::PeriodEnded(stats))
     }
 
-    /// A sensor with an echo in, or one whose window has closed.
+    /// A sensor with an echo, or one whose window has closed.
     fn next_pending(&self, now: Instant) -> Option<u8> {
         if self.ready > 0 {
             return self.first_ready();
@@ -137,8 +136,8 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         (self.oldest != NOBODY && now.has_reached(self.emit_at)).then_some(self.oldest)
     }
 
-    /// A sensor with a reading to emit. The oldest goes first: after it the next oldest must be searched for too, so
-    /// this saves a search where a poll costs most.
+    /// A sensor with a reading to emit. The oldest goes first: the next oldest must be searched for after it anyway, so
+    /// this saves a search in the most expensive poll.
     fn first_ready(&self) -> Option<u8> {
         let is_ready = |x: u8| self.sensor(x).is_some_and(|sensor| sensor.is(READY));
         if self.ready == 1 && is_ready(self.last_ready) {
@@ -219,7 +218,8 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         Some(RingEvent::Reading(Reading { sensor, phase, period, kind, t_echo, previous, age, explained_by }))
     }
 
-    /// Without a reading that can be emitted sooner, the next one comes when the window of the oldest closes.
+    /// Sets the next emission to when the window of the oldest closes, for lack of a reading that can be emitted
+    /// sooner.
     #[inline]
     pub(super) fn emit_when_oldest_ends(&mut self) {
         if self.ready == 0 && self.oldest != NOBODY {
@@ -247,7 +247,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         self.oldest = oldest;
     }
 
-    /// Where windows differ, the sensor that fired first need not be the first to end.
+    /// Finds the sensor whose window closes first, if windows differ.
     pub(super) fn find_first_to_close(&mut self) {
         self.oldest = NOBODY;
         // At most 64 sensors.
@@ -260,13 +260,13 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         self.emit_when_oldest_ends();
     }
 
-    /// After how long the reading of a sensor is emitted if there is no echo.
+    /// Time from a firing to its reading if there is no echo.
     #[inline]
     fn closes_after(&self, sensor: u8) -> Micros {
         self.window_of(sensor).max(self.report_after)
     }
 
-    /// Returns the time when a sensor's last firing ends if there is no echo.
+    /// The time when a sensor's last firing ends if there is no echo.
     fn closes(&self, sensor: u8) -> Instant {
         let fired = self.sensor(sensor).map_or(Instant::default(), Sensor::fired);
         fired + self.closes_after(sensor)
@@ -277,19 +277,19 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     }
 }
 
-/// A firing that is not remembered may explain the readings.
+/// Explanation by a firing that is not remembered.
 const UNKNOWN: Explained = Explained::By(Explanation::History);
 
 /// Memory of who fired when, for the reading of one sensor.
 struct Memory<'r, P, const E: usize, const H: usize> {
     receiver: u8,
-    /// The times by which the receiver's echoes may be off: of its last firing, of the one before, of all earlier ones.
+    /// Uncertainty of the receiver's echoes: of its last firing, of the one before, and of all earlier ones.
     uncertain: [u8; 3],
     sensors: &'r [Sensor<E, H>],
     plan: &'r P,
     listening: &'r Listening,
     known_from: Instant,
-    /// Nothing explains what agrees, as is proven.
+    /// True if it is proven that nothing explains readings that agree.
     on_time: bool,
 }
 
@@ -336,7 +336,7 @@ impl<P: Plan, const E: usize, const H: usize> Memory<'_, P, E, H> {
         self.sensors.get(..self.plan.sensors()).unwrap_or(self.sensors)
     }
 
-    /// Asks of all sensors that the receiver can hear, itself among them, if their firings explain what it heard.
+    /// Looks for firings that explain what the receiver heard, of all sensors that it can hear, itself included.
     #[inline(always)]
     fn ask(&self, pair: &Pair, explain: impl Fn(&Firings<H>, bool) -> bool) -> Explained {
         let receiver = self.receiver;

@@ -1,4 +1,4 @@
-//! Making a [`Schedule`] from raw numbers, or from another one by scaling: what is checked once, and never again.
+//! Constructors of [`Schedule`] from raw numbers, or from another schedule by scaling; each checks its numbers once.
 
 use super::{Firings, MAX_PERIOD, MAX_PHASES, MAX_SENSORS, Phase, Schedule, ScheduleError};
 use crate::time::Micros;

@@ -4,8 +4,8 @@ use core::fmt;
 
 use crate::time::Micros;
 
-/// The most sensors one schedule can hold: as many as a machine word of a desk computer has bits, since the search and
-/// [`Layout`](crate::Layout) keep sets of sensors as bits of a `u64`.
+/// The most sensors one schedule can hold: one bit each in a `u64`, in which the search and [`Layout`](crate::Layout)
+/// keep sets of sensors.
 pub const MAX_SENSORS: usize = 64;
 /// The most phases one schedule can have. The paper has two; [`Ring`](crate::Ring) keeps a phase in three bits.
 pub const MAX_PHASES: usize = 8;

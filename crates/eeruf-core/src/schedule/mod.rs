@@ -25,8 +25,8 @@ pub use verified_for::VerifiedFor;
 /// the capacity, and [`sensors`](Self::sensors) counts (see [`from_slices`](Self::from_slices)). `M` is the number of
 /// phases: two in the paper, one for the conventional method with constant waits.
 ///
-/// A `Schedule` is proof of a check: 1 to 64 sensors, each firing inside its period, in every phase. That its waits
-/// meet Eqs. (13a), (13b) is another matter: see [`verify`](Schedule::verify), or [`schedule!`](crate::schedule!) for a
+/// A `Schedule` is proof of a check: 1 to 64 sensors, each firing inside its period, in every phase. It does not prove
+/// that its waits meet Eqs. (13a), (13b): see [`verify`](Schedule::verify), or [`schedule!`](crate::schedule!) for a
 /// table that is checked when the firmware is compiled.
 ///
 /// ```
@@ -43,7 +43,7 @@ pub use verified_for::VerifiedFor;
 pub struct Schedule<const K: usize, const M: usize = 2> {
     firings: [Firings<K>; M],
     period: Micros,
-    /// The shortest time between two firings of one sensor. Kept, since working it out takes time and stack on a
+    /// The shortest time between two firings of one sensor. Stored, since computing it takes time and stack on a
     /// target.
     min_refire: Micros,
     t_lag: [Micros; K],
@@ -66,7 +66,7 @@ struct Firings<const K: usize> {
     after_last: Micros,
 }
 
-/// Two schedules are equal if their lags, waits and periods are, whether or not they have been verified.
+/// Equality of lags, waits and periods, whether or not the schedules were verified.
 impl<const K: usize, const M: usize> PartialEq for Schedule<K, M> {
     fn eq(&self, other: &Self) -> bool {
         (self.period, self.sensors, self.t_lag, self.t_wait) == (other.period, other.sensors, other.t_lag, other.t_wait)
@@ -125,9 +125,9 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
         if (phase.0 as usize) < M { used(&self.firings[phase.0 as usize].order, self.sensors) } else { &[] }
     }
 
-    /// The sensor at a place in the firing order of a phase, and how long it fires after the one before it; beyond the
-    /// last place a sensor out of range (`K` or more), and the time from the last firing to the end of the period.
-    /// Each step of a plan asks.
+    /// The sensor at a place in the firing order of a phase, and the time since the firing before it; beyond the last
+    /// place a sensor out of range (`K` or more), and the time from the last firing to the end of the period. Each step
+    /// of a plan calls this.
     #[inline]
     pub(crate) const fn firing(&self, phase: u8, place: u8) -> (u8, Micros) {
         if phase as usize >= M {
@@ -155,8 +155,9 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
         Self { verified_for: Some(verified_for), ..self }
     }
 
-    /// For indices already known to be in range; the optimiser does not know that `sensors` is at most `K`, and the
-    /// check spares a firmware image the code for a panic. Cannot overflow: both terms are at most `MAX_PERIOD`.
+    /// Firing time for indices already known to be in range; the optimiser does not know that `sensors` is at most `K`,
+    /// and the check spares a firmware image the code for a panic. Cannot overflow: both terms are at most
+    /// `MAX_PERIOD`.
     pub(crate) const fn fire_at(&self, phase: usize, sensor: usize) -> Micros {
         if phase < M && sensor < K {
             Micros::new(self.t_lag[sensor].as_micros() + self.t_wait[phase][sensor].as_micros())
@@ -166,7 +167,7 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
     }
 }
 
-/// The part of a table that is in use. Without `split_at`, whose panic would stay in a firmware image.
+/// The part of a table that is in use. It avoids `split_at`, whose panic would stay in a firmware image.
 const fn used<T>(table: &[T], sensors: u8) -> &[T] {
     match table.split_at_checked(sensors as usize) {
         Some((used, _)) => used,

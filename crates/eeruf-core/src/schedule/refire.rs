@@ -1,4 +1,4 @@
-//! Time until a sensor of a [`Schedule`](super::Schedule) fires again, and the motion which that allows.
+//! Time until a sensor of a [`Schedule`](super::Schedule) fires again, and the robot's speed that it allows.
 
 use super::{Phase, Schedule};
 use crate::time::Micros;
@@ -63,7 +63,7 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
         if speed > u32::MAX as u64 { u32::MAX } else { speed as u32 }
     }
 
-    /// From this sensor's firing in a phase to its next one.
+    /// Time from this sensor's firing in a phase to its next one.
     pub(crate) const fn refire(&self, phase: usize, sensor: usize) -> Micros {
         let next = self.fire_at((phase + 1) % M, sensor).as_micros() + self.period.as_micros();
         Micros::new(next - self.fire_at(phase, sensor).as_micros())

@@ -1,6 +1,6 @@
 //! `serde` for [`Schedule`]: the keys of a schedule file, `period_us`, `t_lag_us`, `t_wait_a_us`, `t_wait_b_us`, .. .
 //!
-//! What a schedule was verified for is not written: who reads one verifies it.
+//! The requirements that it was verified for are not written: verify a schedule after reading it.
 
 use core::fmt;
 use core::marker::PhantomData;
@@ -127,7 +127,7 @@ impl<'de, const M: usize> Deserialize<'de> for Key<M> {
     }
 }
 
-/// Up to `K` times.
+/// Deserializer of up to `K` times.
 struct Times<const K: usize> {
     times: [Micros; K],
     length: usize,

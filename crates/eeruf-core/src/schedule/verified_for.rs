@@ -1,4 +1,4 @@
-//! [`VerifiedFor`]: what a schedule was verified for.
+//! [`VerifiedFor`]: the requirements that a schedule was verified for.
 
 use crate::time::Micros;
 
@@ -8,16 +8,16 @@ use crate::time::Micros;
 #[non_exhaustive]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct VerifiedFor {
-    /// `T_delta`, for which (13a), (13b) hold; the smallest where sensors have their own.
+    /// `T_delta`, for which (13a), (13b) hold; the smallest if sensors have their own.
     pub t_delta: Micros,
-    /// The least interval between neighbours; where sensors are not all alike, the longest time that any pair, or any
-    /// sensor for itself, keeps between firings: a period that another schedule begins waits for it.
+    /// The least interval between neighbours; if sensors differ, the longest time between firings that any pair or any
+    /// single sensor keeps. The first period of another schedule waits for it.
     pub min_interval: Micros,
-    /// `T_wind`; the shortest refire time where no window was asked for, the smallest where sensors have their own.
+    /// `T_wind`; the smallest if sensors have their own, and the shortest refire time if no window was asked for.
     pub window: Micros,
     /// The least shift of crosstalk from one reading to the next, `2 t_delta + 1 us` or more.
     pub separation: Micros,
-    /// P: the largest change of a path from one reading to the next; `None` for as much as `t_delta`.
+    /// P: the largest change of a path from one reading to the next; `None` for `t_delta`.
     pub path_change: Option<Micros>,
     /// R: how long sound may be audible.
     pub audible: Micros,

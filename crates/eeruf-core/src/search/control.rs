@@ -9,7 +9,7 @@ use core::ops::ControlFlow;
 pub struct Progress {
     /// Nodes visited so far.
     pub nodes: u64,
-    /// The best value found so far, in ticks, where one is sought: the shortest period, the largest interval or
+    /// The best value found so far, in ticks, if the search optimises one: the shortest period, the largest interval or
     /// separation.
     pub best: Option<u32>,
     /// Proven bound of the value, in ticks.
@@ -17,15 +17,16 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// A number of nodes, the best value so far and the bound on it, for searches outside this crate.
+    /// Progress of a search outside this crate: nodes, the best value so far and its bound.
     pub const fn new(nodes: u64, best: Option<u32>, bound: Option<u32>) -> Self {
         Self { nodes, best, bound }
     }
 }
 
-/// Polled every few milliseconds, or as often as the caller asks. `()` always goes on and costs nothing.
+/// Watcher of a search, polled every few milliseconds or as often as the caller asks. `()` never stops it and costs
+/// nothing.
 pub trait Control {
-    /// True to go on, given how far the search has come.
+    /// Returns true to continue, given the progress.
     fn poll(&mut self, progress: &Progress) -> ControlFlow<()>;
 }
 
@@ -42,13 +43,13 @@ impl<F: FnMut(&Progress) -> ControlFlow<()>> Control for F {
     }
 }
 
-/// The end of a search. A search that hands its answer out elsewhere, as those for waits do, finds `()`.
+/// The end of a search. For searches that return their answer elsewhere, such as those for waits, `T` is `()`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Outcome<T = ()> {
-    /// Found.
+    /// The answer was found.
     Found(T),
-    /// Every possibility was searched or excluded: a proof that there is none, or none left.
+    /// Every possibility was searched or excluded: a proof that no answer, or no further one, exists.
     Exhausted,
     /// The budget was spent or the caller stopped the search: neither found nor excluded.
     BudgetSpent,

@@ -11,7 +11,7 @@ use crate::time::Micros;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum SearchError {
-    /// A tick of no length.
+    /// The tick is zero.
     NoTick,
     /// A time that should be a whole number of ticks.
     OffGrid {
@@ -22,7 +22,7 @@ pub enum SearchError {
         /// The tick.
         tick: Micros,
     },
-    /// Free firing times are designed under the exact criterion, which needs no waits.
+    /// Criterion Paper was given for free firing times, which have no waits: they need Exact.
     PaperCriterion,
     /// The number of sensors is 0 or above [`MAX_SENSORS`].
     Sensors(usize),
@@ -72,7 +72,7 @@ pub enum SearchError {
         /// The time that it takes, in microseconds.
         period_us: u64,
     },
-    /// The memory lent is too small.
+    /// The memory that the caller lent is too small.
     Memory {
         /// Words lent.
         words: usize,

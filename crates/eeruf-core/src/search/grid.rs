@@ -1,4 +1,4 @@
-//! Between microseconds, in which a ring is described, and the whole ticks of a grid, in which it is searched.
+//! Conversion between microseconds, in which a ring is described, and the ticks of a grid, in which it is searched.
 
 use super::error::SearchError;
 use crate::time::Micros;
@@ -14,17 +14,17 @@ impl Grid {
         if tick == Micros::ZERO { Err(SearchError::NoTick) } else { Ok(Self { tick_us: tick.as_micros() }) }
     }
 
-    /// The least number of ticks that is no shorter than `time`.
+    /// The least number of ticks that is at least `time`.
     pub(super) fn at_least(self, time: Micros) -> u32 {
         time.as_micros().div_ceil(self.tick_us)
     }
 
-    /// The greatest number of ticks that is no longer than `time`.
+    /// The greatest number of ticks that is at most `time`.
     pub(super) fn at_most(self, time: Micros) -> u32 {
         time.as_micros() / self.tick_us
     }
 
-    /// A time that must lie on the grid.
+    /// Number of ticks of a time that must lie on the grid.
     pub(super) fn exactly(self, what: &'static str, time: Micros) -> Result<u32, SearchError> {
         if time.as_micros() % self.tick_us == 0 {
             Ok(time.as_micros() / self.tick_us)

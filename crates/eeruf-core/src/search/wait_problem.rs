@@ -1,4 +1,4 @@
-//! The paper's question, in microseconds: lags are given, and for each sensor two waits are sought.
+//! [`WaitProblem`]: the paper's question in microseconds. Lags are given, and two waits are sought for each sensor.
 
 use core::fmt;
 
@@ -26,7 +26,7 @@ pub struct WaitProblem<'a> {
     /// `T_lag` of each sensor, in whole ticks; `None` spreads each group of [`neighbours`](Self::neighbours) sensors
     /// over the period, as Table I-a does.
     pub t_lag: Option<&'a [Micros]>,
-    /// `T_delta`: near-identical readings differ by no more.
+    /// `T_delta`: the greatest difference of near-identical readings.
     pub t_delta: Micros,
     /// The least time between the firings of two neighbours.
     pub min_interval: Micros,
@@ -83,7 +83,7 @@ pub struct WaitSearch {
 pub enum Infeasible {
     /// `t_delta` alone cannot be met.
     Separation {
-        /// K.
+        /// K, the number of sensors.
         sensors: usize,
         /// D, the separation of two values `|d|` that `t_delta` needs.
         separation: Micros,
@@ -92,14 +92,14 @@ pub enum Infeasible {
     },
     /// The smallest interval alone cannot be met.
     Interval {
-        /// I.
+        /// I, the smallest interval.
         interval: Micros,
         /// The longest wait.
         wait_max: Micros,
         /// `T_p`.
         period: Micros,
     },
-    /// Both needs together; neither alone is known to be the reason.
+    /// Both needs together cannot be met; it is not known that one alone is the reason.
     Together,
 }
 
@@ -165,7 +165,7 @@ impl WaitSearch {
         })
     }
 
-    /// Returns the question in ticks.
+    /// Returns the problem in ticks.
     fn ticks(&self) -> Search<'_> {
         Search::new(Problem {
             period: self.period,
@@ -192,8 +192,8 @@ impl WaitSearch {
         self.schedule_if_found(outcome, &a, &b)
     }
 
-    /// Names the need, separation or interval, that cannot be met, if there is no table: one of them at a time is
-    /// searched, within the budget for both.
+    /// Names the need, separation or interval, that cannot be met, if there is no table: it searches with one of them
+    /// at a time, within the budget for both.
     ///
     /// # Errors
     /// As for [`first`](Self::first).
@@ -289,7 +289,7 @@ impl WaitSearch {
         self.shortest(least, self.period, memory, budget, |period| Self { period, ..self.clone() })
     }
 
-    /// By bisection: a table serves with longer waits and periods too. None is longer than the problem's.
+    /// Bisection: a table for some waits and period also serves for longer ones. None is longer than the problem's.
     fn shortest<const K: usize>(
         &self,
         mut least: u32,
@@ -314,10 +314,9 @@ impl WaitSearch {
         Ok(found)
     }
 
-    /// Finds the next table of the Pareto front: the tables of which no other has a larger smallest interval without a
-    /// smaller `t_delta`, both at least those of the problem, from the largest interval to the largest `t_delta`. It
-    /// follows `after`, or is the first; `Exhausted` after the last, `BudgetSpent` if the budget ended before it was
-    /// proven.
+    /// Finds the next table of the Pareto front, from the largest interval to the largest `t_delta`; both are at least
+    /// those of the problem. No other table improves one without losing in the other. The table follows `after`, or is
+    /// the first; `Exhausted` after the last, `BudgetSpent` if the budget ended before it was proven.
     ///
     /// # Errors
     /// As for [`first`](Self::first).
@@ -414,7 +413,7 @@ pub struct FrontTable<const K: usize> {
     separation: u32,
 }
 
-/// Table I-a: sensor `x` of a group of `n` lags by `x mod n` parts in `n` of the period.
+/// Lags of Table I-a: sensor `x` in groups of `n` lags by `x mod n` n-ths of the period.
 fn default_lag(problem: &WaitProblem<'_>, x: usize) -> Micros {
     let n = u64::from(problem.neighbours.max(1));
     let part = u64::from(problem.period.as_micros()) * (x as u64 % n) / n;

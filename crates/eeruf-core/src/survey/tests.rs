@@ -1,4 +1,4 @@
-//! A survey's firings and rows, also after it was left alone.
+//! A survey's firings and rows, also after a long time without polls.
 
 extern crate std;
 use super::*;
@@ -47,8 +47,8 @@ fn every_sensor_and_pair_fires_with_every_lead() {
     assert_eq!(SurveyPlan::new(1).slots(), 3);
 }
 
-/// Runs a survey over the wrap of the clock, polled at its deadlines and so much later; each sensor hears an edge
-/// `1000 + sensor` after it fires and another later.
+/// Runs a survey over the wrap of the clock, polled at its deadlines or later; each sensor hears an edge `1000 +
+/// sensor` after it fires and another later.
 fn run(plan: SurveyPlan, late: impl Fn(usize) -> u32) -> (Vec<(u32, u8)>, Vec<Row>) {
     let mut survey = Survey::new(plan, Instant::from_micros(u32::MAX - 50_000));
     let (mut fired, mut rows) = (Vec::new(), Vec::new());

@@ -22,7 +22,8 @@ fn wall(r: &mut Random, sensor: u8) -> Micros {
     Micros::new(4_000 + 1_500 * u32::from(sensor) + r.up_to(30))
 }
 
-/// Own walls, Table I-d, a loop that comes round every 0 to 5 ms; returns readings, and those accepted.
+/// Runs a loop that comes round every 0 to 5 ms, with own walls and Table I-d; returns the number of readings, and of
+/// accepted ones.
 fn late_loop(seed: u64, by_timer: bool) -> (u32, u32) {
     let config = RingConfig::new().with_t_delta(Micros::new(999)).with_window(Micros::from_millis(40));
     let start = u32::MAX - 2_000_000;
@@ -80,7 +81,7 @@ fn late_loop_with_timed_triggers_accepts_own_walls() {
     }
 }
 
-/// The next firings of a ring as they come if it is polled on time.
+/// The next firings of a ring if it is polled on time.
 fn fired<P: Plan, J: Judge, const H: usize>(mut ring: Ring<P, J, 12, 1, H>, number: usize) -> Vec<Upcoming> {
     let mut fired = vec![];
     while fired.len() < number {

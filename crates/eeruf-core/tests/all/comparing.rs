@@ -1,5 +1,5 @@
-//! Ambiguous readings of a ring: after a restart those that sound from before could explain, and none that nothing
-//! explains, whatever is done to the ring.
+//! Ambiguous readings of a ring: after a restart all that earlier sound could explain; never one without an
+//! explanation, whatever is done to the ring.
 
 use eeruf_core::tables::{PAPER_12, TABLE_I_D};
 use eeruf_core::{
@@ -14,7 +14,7 @@ const WINDOW: Micros = Micros::from_millis(40);
 struct Run<'s> {
     ring: ScheduledRing<'s, 12>,
     now: Instant,
-    /// The firings of the present period, and when they were.
+    /// The firings of the present period with their instants.
     fired: Vec<(u8, Instant)>,
 }
 
@@ -23,7 +23,7 @@ impl<'s> Run<'s> {
         Self { ring, now: Instant::from_micros(0), fired: vec![] }
     }
 
-    /// The next event, polled for this much later than it is due.
+    /// Polls this much later than the next event is due, and returns the event.
     fn step(&mut self, late: u32) -> RingEvent {
         self.now = self.ring.next_deadline() + Micros::new(late);
         let event = self.ring.poll(self.now).expect("an event at the deadline");

@@ -24,7 +24,7 @@ fn draw_layout(random: &mut Random) -> Layout<'static> {
     }
 }
 
-/// `T_x,phase`: what the paper calls the wait.
+/// `T_x,phase`, the paper's wait.
 fn wait<const M: usize>(schedule: &Schedule<SENSORS, M>, phase: usize, x: usize) -> i64 {
     schedule.t_wait(Phase(phase as u8))[x].as_micros().into()
 }

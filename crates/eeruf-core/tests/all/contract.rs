@@ -1,4 +1,4 @@
-//! The contract of `Plan`: what core's own plans keep, and that the check finds what is broken.
+//! The contract of `Plan`: core's own plans keep it, and the check finds plans that break it.
 
 use eeruf_core::tables::{TABLE_I_A, TABLE_I_D};
 use eeruf_core::{
@@ -27,7 +27,7 @@ fn immediate_refiring_keeps_the_contract_whatever_is_done_to_it() {
     }
 }
 
-/// The fault of a plan that is right otherwise.
+/// The fault of a plan that is otherwise correct.
 #[derive(Clone, Copy, PartialEq)]
 enum Fault {
     FiresTheDisabled,
@@ -136,7 +136,7 @@ impl Plan for Faulty {
     }
 }
 
-/// The check's finding with some seed.
+/// The first finding of the check over several seeds.
 fn found(fault: Fault) -> Option<BrokenPromise> {
     (0..40).find_map(|seed| {
         let inner = ScheduledFiring::new(&TABLE_I_D, START);
@@ -159,7 +159,7 @@ fn the_check_finds_each_promise_that_is_broken() {
     assert_eq!(found(Fault::FiresOneThatIsNotThere), Some(BrokenPromise::WrongSensor { sensor: 12 }));
 }
 
-/// One sensor that fires as often as it is allowed to, and what was asked of it.
+/// A plan with one sensor that fires as often as it may, and a record of the calls to it.
 struct Metronome {
     due: Instant,
     enabled: bool,

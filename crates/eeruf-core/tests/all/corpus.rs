@@ -30,12 +30,12 @@ const K: usize = 16;
 const GOLDEN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/ring-golden.txt");
 /// Rings in the corpus beside those of [`RARE`]; `EERUF_RINGS` of them for a longer comparison.
 const RINGS: u64 = 40;
-/// Seeds of rings in which a port differs if it gets a border of the rule wrong: of `audible`, of `path_change`, of the
-/// lateness to spare, of the periods for which an irregular firing counts, of the period of a late edge, of restarts,
-/// of what is proven, of `t_delta`.
+/// Seeds of rings in which a port differs if it handles a limit wrongly: `audible`, `path_change`, the tolerated
+/// lateness, the periods for which an irregular firing counts, the period of a late edge, restarts, proven timetables,
+/// `t_delta`.
 const RARE: [u64; 12] = [67, 86, 390, 449, 672, 1043, 1494, 1531, 1984, 2369, 2505, 2893];
 const STEPS: u32 = 64;
-/// More than an interval of an edge that is not late.
+/// Interval between looks that is longer than that of any edge that is not late.
 const LOOKS: u32 = 900;
 const NONE: u32 = u32::MAX;
 
@@ -160,11 +160,11 @@ fn verify(r: &mut Random, text: &mut Text, schedule: Schedule<K>) -> (Schedule<K
 struct World {
     now: u32,
     late: u32,
-    /// Clocks jump, and firings and sensors are disturbed, this many times less often.
+    /// Factor by which jumps of the clock and disturbances of firings and sensors are rarer.
     calm: u32,
     own: Vec<u32>,
     path: u32,
-    /// Only the path sounds.
+    /// True if the only sound is that of the path.
     path_only: bool,
     echoes: Vec<(u32, u8)>,
     /// Lines are looked at this many microseconds apart at most; 0 for when they fall.
@@ -239,7 +239,7 @@ impl World {
     }
 }
 
-/// Runs a ring, and writes down what happens to it.
+/// Runs a ring, and records its events.
 fn run<const M: usize>(
     r: &mut Random,
     text: &mut Text,
@@ -318,7 +318,7 @@ fn run<const M: usize>(
     }
 }
 
-/// One of the settings of silence, written down.
+/// Picks one of the settings of silence, and records it.
 fn silence(text: &mut Text, which: u32) -> Silence {
     text.add('G', [which % 3]);
     [Silence::NeverFree, Silence::NeedsAnswer, Silence::Trusted][which as usize % 3]
@@ -329,7 +329,7 @@ fn correct<const M: usize>(text: &mut Text, ring: &mut ScheduledBy<'_, M>, senso
     ring.fired(sensor, Instant::from_micros(at)).unwrap();
 }
 
-/// Does something to the ring.
+/// Performs a random operation on the ring.
 fn operate<const M: usize>(r: &mut Random, text: &mut Text, ring: &mut ScheduledBy<'_, M>, now: u32) {
     let sensor = r.up_to(ring.sensors() as u32 - 1) as u8;
     match r.up_to(9) {
@@ -381,7 +381,7 @@ fn run_table(seed: u64, text: &mut Text, looks: u32) {
     }
 }
 
-/// The corpus, with rings of tables of the first seeds, this many.
+/// The corpus, with this many rings of tables from the first seeds.
 fn corpus(rings: u64) -> String {
     let mut text = Text(String::new());
     for seed in (0..rings).chain(RARE) {

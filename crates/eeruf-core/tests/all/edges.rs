@@ -1,4 +1,4 @@
-//! The queue of edges between two threads: the one thing in the core that two run at once.
+//! The queue of edges between two threads: the only type in the core that two threads use at once.
 //!
 //! Miri replays it under many interleavings, with stores that other threads see late, as on ARM:
 //! `MIRIFLAGS=-Zmiri-many-seeds=0..200 cargo +nightly miri test -p eeruf-core --test all edges_pass`.
@@ -10,12 +10,12 @@ use eeruf_core::{Edge, EdgeQueue, Instant};
 
 use crate::common::random::Random;
 
-/// All parts of an edge say which it is.
+/// An edge all of whose parts depend on this number.
 fn edge(n: u32) -> Edge {
     Edge { sensor: (n * 37 % 128) as u8, high: n % 3 == 0, at: Instant::from_micros(n.wrapping_mul(0x9e37_79b1)) }
 }
 
-/// Pushes edges on one thread while another takes them out; how many were lost.
+/// Pushes edges on one thread while another pops them; returns how many were lost.
 fn pass<const N: usize>(edges: u32, seed: u64) -> u8 {
     let queue = EdgeQueue::<N>::new();
     let done = AtomicBool::new(false);

@@ -1,4 +1,4 @@
-//! The true instant of a firing, where the caller says it.
+//! The true instant of a firing, if the caller reports it.
 
 use eeruf_core::tables::PAPER_12;
 use eeruf_core::{Instant, Micros, PeriodStats, ReadingKind, Ring, RingConfig, RingEvent, ScheduledRing, SensorError};
@@ -13,10 +13,10 @@ fn ring() -> ScheduledRing<'static, 12> {
     Ring::new(&PAPER_12, RingConfig::new().with_window(Micros::from_millis(40)), at(0)).unwrap()
 }
 
-/// Outcome of a run in which the firing with number `n` comes `late(n)` us after its poll, and its echo 9 ms later.
+/// The result of a run in which firing `n` comes `late(n)` us after its poll, and its echo 9 ms later.
 struct Run {
     fired: Vec<(u8, u32)>,
-    /// Where the schedule has them, without any lateness.
+    /// The scheduled instants, without any lateness.
     planned: Vec<u32>,
     accepted: usize,
     echoes: Vec<u32>,

@@ -1,5 +1,4 @@
-//! Promises of immediate refiring to a ring, one at a time; the whole contract, which takes longer, is held in
-//! `contract`.
+//! Promises of immediate refiring to a ring, one at a time; the slower test of the whole contract is in `contract`.
 
 use eeruf_core::tables::TABLE_I_D;
 use eeruf_core::{
@@ -20,7 +19,7 @@ fn schedule() -> Schedule<2> {
     Schedule::new(ms(100), [Micros::ZERO; 2], [[ms(10), ms(55)]; 2]).unwrap()
 }
 
-/// Polls whenever something is due until some instant, each firing ended 5 ms later: who fired when.
+/// Polls at each deadline until an instant, and ends each firing after 5 ms; returns the firings.
 fn firings(refiring: &mut ImmediateRefiring<'_, 2>, until: Instant) -> Vec<(u8, Instant)> {
     let mut fired = vec![];
     while until.has_reached(refiring.deadline()) {

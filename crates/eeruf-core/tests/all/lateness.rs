@@ -1,5 +1,4 @@
-//! Lateness as a ring reports it, and steady lateness, which costs nothing. What lateness does to crosstalk is in
-//! `sound`.
+//! Lateness as a ring reports it, and constant lateness, which costs nothing. Its effect on crosstalk is in `sound`.
 
 use eeruf_core::tables::TABLE_I_D;
 use eeruf_core::{Instant, Micros, PeriodStats, ReadingKind, Ring, RingConfig, RingEvent, Schedule, ScheduledRing};

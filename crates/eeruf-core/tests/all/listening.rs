@@ -1,4 +1,4 @@
-//! Hearing of a ring: which edges are the echo of a firing, to the microsecond, and which are none.
+//! Listening of a ring: which edges are the echo of a firing, to the microsecond.
 
 use eeruf_core::{
     Instant, Micros, Reading, ReadingKind, Ring, RingConfig, RingError, RingEvent, Schedule, ScheduledRing,
@@ -20,7 +20,7 @@ fn ring(schedule: &Schedule<2>) -> ScheduledRing<'_, 2> {
     Ring::unverified(schedule, config.with_blanking(Micros::new(BLANKING)), Instant::from_micros(u32::MAX)).unwrap()
 }
 
-/// Polls until sensor 0 fires: when.
+/// Polls until sensor 0 fires; returns the instant.
 fn fire(ring: &mut ScheduledRing<'_, 2>) -> Instant {
     for _ in 0..100 {
         let now = ring.next_deadline();
@@ -31,7 +31,7 @@ fn fire(ring: &mut ScheduledRing<'_, 2>) -> Instant {
     panic!("sensor 0 never fires");
 }
 
-/// Polls until a reading of sensor 0 is out: when, and which.
+/// Polls until a reading of sensor 0 is emitted; returns the instant and the reading.
 fn reading(ring: &mut ScheduledRing<'_, 2>) -> (Instant, Reading) {
     for _ in 0..100 {
         let now = ring.next_deadline();
@@ -43,7 +43,7 @@ fn reading(ring: &mut ScheduledRing<'_, 2>) -> (Instant, Reading) {
     panic!("sensor 0 has no reading");
 }
 
-/// Reading of a new ring from edges this long after the firing: the kind, the echo time, and when it is emitted.
+/// Reading of a new ring with edges this long after the firing: the kind, the echo time, and the instant of emission.
 fn heard(edges: &[u32]) -> (ReadingKind, Option<u32>, u32) {
     let schedule = schedule();
     let mut ring = ring(&schedule);
@@ -211,7 +211,7 @@ fn a_reading_says_the_phase_and_the_period_of_its_firing() {
     }
 }
 
-/// Polls until sensor 0 is next to fire: when it is due.
+/// Polls until sensor 0 is next to fire; returns the due instant.
 fn fire_of_0(ring: &mut ScheduledRing<'_, 2>) -> Instant {
     for _ in 0..100 {
         let now = ring.next_deadline();
@@ -277,7 +277,7 @@ fn several_echoes_are_heard_until_window_closes() {
     assert_eq!(read, expected);
 }
 
-/// Reason why a ring of two sensors with room for `K` is refused, and one that fires in turn, if they are.
+/// Reason why a ring of two sensors with room for `K`, and such a flow ring, are refused, if they are.
 fn refused<const K: usize>() -> [Option<RingError>; 2] {
     let (schedule, now) = (schedule(), Instant::from_micros(0));
     let config = RingConfig::new().with_t_delta(Micros::new(500)).with_window(Micros::new(WINDOW));

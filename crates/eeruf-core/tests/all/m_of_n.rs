@@ -11,14 +11,14 @@ use crate::common::random::Random;
 const SENSORS: usize = 6;
 const T_DELTA: Micros = Micros::new(80);
 const P: u32 = 150;
-/// The clock wraps after two seconds.
+/// Begin of a run, two seconds before the clock wraps.
 const BEGIN: Instant = Instant::from_micros(u32::MAX - 2_000_000);
 
-/// Number of readings of a sensor, and of those that were accepted.
+/// Number of a sensor's readings, and of those accepted.
 type Counts = (u32, u32);
 
-/// Runs a ring whose loop is late by up to `late` us for four seconds; someone who `operates` does to it what can be
-/// done. `sound` says after how many us which sensor hears something of a firing, by the time since the beginning.
+/// Runs a ring for four seconds whose loop is late by up to `late` us; `operates` performs operations on it. `sound`
+/// gives the sensors that hear a firing, with the delays in us, by the time since the beginning.
 fn run<J: Judge>(
     judge: J,
     speed_mm_s: u32,
@@ -85,7 +85,7 @@ fn run<J: Judge>(
     counts
 }
 
-/// Readings of a receiver without a wall of its own that hears one path, which changes by as much as it may.
+/// Readings of a receiver without a wall that hears one path, which changes as fast as it may.
 fn one_path<J: Judge>(judge: J, speed_mm_s: u32, seed: u32) -> Counts {
     let mut random = Random(seed.into());
     let late = [0, 50, 1000, 5000][random.up_to(3) as usize];
@@ -105,7 +105,7 @@ fn one_path<J: Judge>(judge: J, speed_mm_s: u32, seed: u32) -> Counts {
     })
 }
 
-/// The judges that are asked, at this speed.
+/// The judges under test, at this speed.
 fn votes(m: u8, n: u8, speed_mm_s: u32) -> MOfN<SENSORS, 5> {
     MOfN::new(m, n, T_DELTA).unwrap().with_top_speed(speed_mm_s as u16)
 }
@@ -151,7 +151,7 @@ fn own_walls_have_votes() {
     }
 }
 
-/// Verdicts on echoes of one sensor, of which 0 is silence and 1 a firing that says nothing.
+/// Verdicts on echoes of one sensor; 0 is silence and 1 a firing without information.
 fn verdicts(judge: &mut impl Judge, echoes_us: &[u32], expected_change_us: i32) -> Vec<Verdict> {
     let push = |&echo_us: &u32| {
         let echoes: Vec<_> = Some(Micros::new(echo_us)).filter(|_| echo_us > 1).into_iter().collect();
@@ -242,7 +242,7 @@ fn judges_refuse_votes_out_of_their_range() {
     assert_eq!(MedianFilter::<1>::new(4, T_DELTA).unwrap_err().to_string(), "of is 4; expected 1 to 3");
 }
 
-/// The firing before that was asked about.
+/// The earlier firing that the judge asked about.
 struct Asked(std::cell::Cell<Option<u8>>);
 
 impl Sounds for Asked {

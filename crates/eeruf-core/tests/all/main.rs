@@ -1,5 +1,4 @@
-//! The paper's claims, and the searches against shared tables, slow and obvious judges, and their own limits, in one
-//! binary.
+//! The paper's claims, and the searches against shared tables, slow judges and their own limits, in one binary.
 
 mod by_hardware;
 mod claims;

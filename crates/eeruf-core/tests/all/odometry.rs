@@ -1,5 +1,5 @@
-//! Odometry and the promise: a ring that is told the change of a good reading accepts no path of foreign sound for it,
-//! and every wall that it drives towards.
+//! Odometry and the promise: a ring that knows the expected change of a good reading accepts every wall that it drives
+//! towards, and no path of foreign sound.
 
 use eeruf_core::tables::PAPER_12;
 use eeruf_core::{Instant, Micros, Phase, ReadingKind, Ring, RingConfig, RingEvent};
@@ -9,9 +9,9 @@ const PERIOD: i64 = 100_000;
 /// Change of an echo at 1 m/s towards a wall, in nanoseconds a millisecond.
 const AT_1_M_S: i64 = 5_828;
 
-/// Drives at `mm_s`; each sensor hears sound of the one `further` places on, 0 for its own wall, along a path that is
-/// `length` long in the middle of the run and gets shorter at `path_mm_s`. Polls on time and knows its odometry.
-/// Returns the receivers that accepted anything, the readings that they accepted, and all that were compared.
+/// Drives at `mm_s`; each sensor hears the one `further` places on (0 for its own wall) along a path that is `length`
+/// long in the middle of the run and gets shorter at `path_mm_s`. Polls on time and knows its odometry. Returns the
+/// receivers that accepted anything, the readings that they accepted, and all that were compared.
 fn run(mm_s: i64, path_mm_s: i64, further: usize, length: i64) -> (usize, u32, u32) {
     let fires = |x: usize, number: i64| {
         let t_fire = PAPER_12.t_fire(Phase((number % 2) as u8), x).unwrap();

@@ -1,4 +1,4 @@
-//! Features two by two: limits per sensor, many phases, several echoes, adaptation.
+//! Combinations of two features: limits of single sensors, many phases, several echoes, adaptation.
 
 use eeruf_core::{
     EachSensor, Instant, Micros, ReadingKind, Requirements, Ring, RingConfig, RingEvent, Uneven, VerifiedSchedule,
@@ -35,7 +35,7 @@ fn echoes(sensor: u8, firing: u32) -> [Micros; 3] {
     [Micros::new(3_000 + 2_500 * (firing % 3)), Micros::new(wall), Micros::new(wall + 10_000)]
 }
 
-/// The echo times that a ring accepts of its first two sensors in ten seconds, if the first `heard` echoes come.
+/// The echo times that a ring accepts of its first two sensors in ten seconds, if their first `heard` echoes arrive.
 fn accepted<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize>(
     ring: &mut Ring<P, J, K, E, H>,
     heard: usize,
@@ -65,7 +65,7 @@ fn accepted<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize>(
     }
 }
 
-/// All that was accepted of the first sensor is its wall, and so of the second.
+/// Checks that each reading accepted of the first two sensors is its wall.
 fn are_walls(accepted: &[Vec<u32>; 2]) {
     for (times, wall) in accepted.iter().zip([30_000, 10_000]) {
         assert!(times.len() > 20 && times.iter().all(|&time| time == wall), "{times:?}");

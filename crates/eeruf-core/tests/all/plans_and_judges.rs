@@ -1,4 +1,4 @@
-//! Any plan goes with any judge, also with one of the caller's own.
+//! Every plan works with every judge, including one of the caller's own.
 
 use eeruf_core::{
     EchoFilter, Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent,
@@ -12,7 +12,7 @@ const SENSORS: usize = 8;
 const BEGIN: Instant = Instant::from_micros(0);
 const CONFIG: RingConfig = RingConfig::new().with_window(Micros::from_millis(30));
 
-/// Believes every third echo of a sensor, for no reason, and says that all others are clear.
+/// A judge that accepts every third echo of a sensor and calls all others clear.
 #[derive(Default)]
 struct EveryThird {
     readings: [u8; SENSORS],

@@ -14,7 +14,7 @@ fn ms(ms: u32) -> Micros {
     Micros::from_millis(ms)
 }
 
-/// As the schedules of milliseconds are verified for.
+/// Settings for which the schedules in milliseconds are verified.
 const CONFIG: RingConfig = RingConfig::new().with_t_delta(Micros::from_millis(1)).with_window(Micros::from_millis(5));
 
 /// A schedule of firing times in milliseconds, verified for this interval between all its sensors.
@@ -29,7 +29,7 @@ fn verified<const K: usize>(period: u32, a: [u32; K], b: [u32; K], min_interval:
     schedule.verified(&requirements).unwrap()
 }
 
-/// The firings up to some instant.
+/// The firings up to an instant.
 fn fire_until<const K: usize>(ring: &mut ScheduledRing<'_, K>, end: u32) -> Vec<(u8, u32)> {
     let mut fired = vec![];
     loop {
@@ -157,7 +157,7 @@ fn empty_periods_are_caught_up_one_late() {
     }
 }
 
-/// Returns true if a reading survives a poll at an instant so long before the end of the period.
+/// Returns true if a reading survives a poll at an instant this long before the end of the period.
 fn outlasts_a_step_back(back: u32) -> bool {
     let schedule = Schedule::<1>::from_firing(ms(20), [[ms(17)], [ms(18)]]).unwrap();
     let mut ring: ScheduledRing<1> = Ring::unverified(&schedule, CONFIG, Instant::from_micros(0)).unwrap();
@@ -387,8 +387,8 @@ fn schedules_hash_as_they_compare() {
     assert!(TABLE_I_A != TABLE_I_D && hash(&TABLE_I_A) != hash(&TABLE_I_D));
 }
 
-/// The kind of the first reading of sensor 1 after so long without a poll, where two agree that are longer than sound
-/// is audible.
+/// The kind of the first reading of sensor 1 after this long without a poll, if two readings agree that are longer than
+/// sound is audible.
 fn across_a_sleep(minutes: u32) -> ReadingKind {
     let config = RingConfig::new().with_audible(ms(10));
     let mut ring = Ring::new(&PAPER_12, config, Instant::from_micros(0)).unwrap();

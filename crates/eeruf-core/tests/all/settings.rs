@@ -50,8 +50,8 @@ fn settings_in_the_wrong_unit_are_refused_with_the_likely_cause() {
     );
 }
 
-/// A sensor that rests no longer than its window hears sound of its last firing but one, beyond R less its rest,
-/// once it is deaf for less than at the start: all of it is foreign.
+/// With a blanking time shorter than at the start, a sensor that rests no longer than its window hears sound of its
+/// last firing but one, beyond R less its rest; all of it must count as foreign.
 #[test]
 fn a_shorter_blanking_time_lets_no_stale_echo_in() {
     let (rest, begun) = (Micros::from_millis(25), Micros::from_millis(9));

@@ -1,4 +1,4 @@
-//! Edges that lie somewhere within an interval: what their readings are worth, and when they say too little.
+//! Edges known only to lie within an interval: their readings, and when they say too little.
 
 use eeruf_core::{
     Instant, Micros, Reading, ReadingKind, Ring, RingConfig, RingError, RingEvent, Schedule, ScheduledRing,

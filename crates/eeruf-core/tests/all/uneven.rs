@@ -1,5 +1,5 @@
-//! Uneven rings: what single sensors and pairs need, against a judge that lays all firings of five periods on one line
-//! of time.
+//! Needs of single sensors and pairs in small rings, against a judge that compares all firings of five periods on one
+//! line of time.
 
 use eeruf_core::{
     EachSensor, Layout, Micros, Requirements, Schedule, Uneven, VerifiedSchedule,
@@ -10,7 +10,7 @@ use eeruf_core::{
 
 use crate::common::random::Random;
 
-/// A small ring with everything that can be uneven.
+/// A small ring with every kind of uneven need.
 struct Ring {
     t_delta: Vec<Micros>,
     window: Vec<Micros>,

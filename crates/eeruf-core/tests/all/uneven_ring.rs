@@ -20,7 +20,7 @@ const fn ms<const K: usize>(times: [u32; K]) -> [Micros; K] {
     micros
 }
 
-/// Two that look far and compare coarsely, two that look near, two of which fire together.
+/// Two sensors that look far and compare coarsely, two that look near, two of which fire together.
 fn corners() -> VerifiedSchedule<4, 2, EachSensor<4>> {
     let schedule = Schedule::from_firing(Micros::from_millis(60), [ms([0, 5, 40, 40]), ms([2, 12, 24, 24])])
         .expect("it lies within");
@@ -207,7 +207,7 @@ fn uneven_ring_is_on_time_within_its_slack() {
     }
 }
 
-/// Four sensors on shared lines, two of which look farther, the first farther than any fires again.
+/// Four sensors on shared lines, two of which look farther; the first looks beyond the time until any fires again.
 fn farther() -> VerifiedSchedule<4, 2, EachSensor<4>> {
     let schedule = Schedule::from_firing(Micros::from_millis(80), [ms([62, 20, 44, 4]), ms([58, 10, 26, 30])])
         .expect("it lies within");

@@ -1,4 +1,4 @@
-//! Answers of the search for waits beside its tables: that a question without an answer has no bound, and errors in a
+//! Answers of the search for waits other than tables: a question without an answer has no bound, and errors in a
 //! question.
 
 use eeruf_core::search::{Budget, MEMORY_WORDS, WaitProblem, WaitSearch};

@@ -1,5 +1,5 @@
-//! Owned random wait-time problems, where plain nested loops can say everything: found or not, every count, the best
-//! values and the front.
+//! Owned random wait-time problems small enough for nested loops to answer: existence, counts, the best values and the
+//! front.
 
 use crate::common::naive::{self, Layout, Problem};
 use crate::common::{Owned, holds, separation, ticks, waits};
@@ -7,7 +7,7 @@ use eeruf_core::search::{Budget, Found, FrontTable, MEMORY_WORDS, Outcome, WaitS
 use eeruf_core::{Criterion, Schedule};
 use proptest::prelude::*;
 
-/// A line, a ring, blocks or any graph; lags in groups or anyhow.
+/// A random line, ring, blocks or graph; lags in groups or at random.
 fn tiny() -> impl Strategy<Value = Owned> {
     (
         1_usize..=4,
@@ -44,8 +44,8 @@ fn tiny() -> impl Strategy<Value = Owned> {
         })
 }
 
-/// The interval and separation of every table of a problem without demands, those that dominate only, greatest interval
-/// first.
+/// The interval and separation of every table of a problem without requirements, reduced to those on the front,
+/// greatest interval first.
 fn naive_front(tiny: &Owned) -> Vec<(u32, u32)> {
     let problem = tiny.problem();
     let mut points: Vec<(u32, u32)> = Vec::new();

@@ -57,7 +57,7 @@ fn every_best_interval_of_the_shared_tables_comes_out_proven() {
     }
 }
 
-/// The best interval for the paper's lags, in ticks, after the checks that every result must pass.
+/// The best interval for the paper's lags, in ticks, after every result passed the checks.
 fn best_interval(owned: &Owned) -> (u32, u64) {
     let sensors = owned.lag.len();
     let mut memory = vec![0; memory_words(sensors)];

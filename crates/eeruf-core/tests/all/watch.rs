@@ -1,4 +1,4 @@
-//! Questions of firmware while a ring runs: the state before each sensor, blind sensors, pauses.
+//! Functions for firmware while a ring runs: the state before each sensor, blind sensors, pauses.
 
 use eeruf_core::tables::PAPER_12;
 use eeruf_core::{
@@ -17,7 +17,8 @@ fn ring(start: u32) -> ScheduledRing<'static, 12> {
     ring
 }
 
-/// Runs for some periods; `echo(sensor, period)` is what each sensor hears. Returns when it ended, and who got blind.
+/// Runs for several periods; `echo(sensor, period)` is the echo that each sensor hears. Returns the end of the run, and
+/// the sensors that became blind.
 fn run(
     ring: &mut ScheduledRing<'_, 12>,
     watch: &mut SensorWatch<12>,

@@ -1,4 +1,4 @@
-//! Budget of nodes for a search, and its watcher: one counter of nodes, one comparison a node.
+//! The budget of a search in nodes, and its watcher.
 
 use core::fmt;
 

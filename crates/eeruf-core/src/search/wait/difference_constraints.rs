@@ -1,5 +1,5 @@
-//! A system of *difference constraints* on the waits, and its least solution, found by raising what is too low (Bellman
-//! and Ford).
+//! A system of *difference constraints* on the waits, and its least solution, found by raising waits that are too low
+//! (Bellman and Ford).
 //!
 //! Node `2 i` is `a_i` and node `2 i + 1` is `b_i`. Every constraint says that one node is at least another plus a
 //! weight, and weights follow from a few words a sensor, so none is stored. If raising never ends or passes `wait_max`
@@ -23,20 +23,20 @@ pub(super) struct Constraints<'p> {
     sensors: usize,
     /// The least waits so far, by node.
     pub(super) wait: [i32; 2 * MAX_SENSORS],
-    /// By phase and sensor: the conflicting sensors that fire after it.
+    /// For each phase and sensor, the conflicting sensors that fire after it.
     after: [[u64; MAX_SENSORS]; 2],
-    /// By sensor: the conflicting sensors that could come too close across the border of a period.
+    /// For each sensor, the conflicting sensors that could come too close across the border of a period.
     across: [u64; MAX_SENSORS],
-    /// By sensor: the sensors whose `s` lies at least `D` above its own; only for sensors whose `d` is fixed.
+    /// For each sensor whose `d` is fixed, the sensors whose `s` lies at least `D` above its own.
     above: [u64; MAX_SENSORS],
-    /// By sensor: least and greatest `d = a - b`.
+    /// For each sensor, least and greatest `d = a - b`.
     pub(super) d: [[i32; 2]; MAX_SENSORS],
 }
 
 // Indices: sensors are below `sensors <= MAX_SENSORS`, as bits of rows are (`Search::new` checked the rows), and nodes
 // below twice that.
 impl<'p> Constraints<'p> {
-    /// No orders chosen, `d` free.
+    /// Constraints without chosen orders and with `d` free.
     pub(super) fn new(problem: &'p Problem<'p>) -> Self {
         let free = problem.wait_max as i32;
         let mut constraints = Self {
@@ -58,17 +58,17 @@ impl<'p> Constraints<'p> {
         constraints
     }
 
-    /// `f_j >= f_i + I` in one phase, as `wait_j >= wait_i + weight`.
+    /// Weight of `f_j >= f_i + I` in one phase, as `wait_j >= wait_i + weight`.
     fn after_weight(&self, i: usize, j: usize) -> i32 {
         self.problem.interval as i32 + self.problem.lag[i] as i32 - self.problem.lag[j] as i32
     }
 
-    /// `T_p + f_j >= f_i + I` from one phase to the next, as `wait_j >= wait_i + weight`.
+    /// Weight of `T_p + f_j >= f_i + I` from one phase to the next, as `wait_j >= wait_i + weight`.
     fn across_weight(&self, i: usize, j: usize) -> i32 {
         self.after_weight(i, j) - self.problem.period as i32
     }
 
-    /// Returns true if `j` can fire `I` after `i` within a phase at all.
+    /// Returns true if `j` can fire `I` after `i` within a phase.
     pub(super) fn can_follow(&self, i: usize, j: usize) -> bool {
         self.after_weight(i, j) <= self.problem.wait_max as i32
     }
@@ -120,13 +120,13 @@ impl<'p> Constraints<'p> {
         false
     }
 
-    /// Raises the waits once more from the bottom, after constraints were withdrawn.
+    /// Raises the waits again from zero, after constraints were withdrawn.
     pub(super) fn raise_anew(&mut self) -> bool {
         self.wait = [0; 2 * MAX_SENSORS];
         self.raise()
     }
 
-    /// Raises what node `node` pushes; `false` if something passes `wait_max`.
+    /// Raises the nodes that depend on `node`; `false` if one exceeds `wait_max`.
     fn raise_from(&mut self, node: usize, dirty: &mut u128) -> bool {
         let (i, phase) = (node / 2, node % 2);
         let from = self.wait[node];

@@ -5,15 +5,15 @@ use crate::requirements::Criterion;
 use crate::schedule::MAX_SENSORS;
 use crate::search::{Members, Outcome};
 
-/// Walks all tables. Its trail is the table itself; it takes no memory from the caller.
+/// A walk over all tables. The table itself is the trail; it takes no memory from the caller.
 #[derive(Debug, Clone)]
 pub(crate) struct Enumeration<'p> {
     problem: Problem<'p>,
     a: [u32; MAX_SENSORS],
     b: [u32; MAX_SENSORS],
-    /// Sensors below this one have waits that fit together; `None` when all tables were handed out.
+    /// Number of sensors whose waits fit together; `None` when all tables were returned.
     depth: Option<usize>,
-    /// The present table was handed out: the next one starts after it.
+    /// True if the present table was returned: the next one starts after it.
     handed_out: bool,
 }
 
@@ -29,7 +29,7 @@ impl<'p> Search<'p> {
         }
     }
 
-    /// Returns the tables that follow these waits, in ticks, in the walk's order.
+    /// Returns a walk over the tables that follow these waits, in ticks.
     pub(crate) fn enumerate_after(&self, a: [u32; MAX_SENSORS], b: [u32; MAX_SENSORS]) -> Enumeration<'p> {
         let mut rest = Enumeration { a, b, ..self.enumerate() };
         let sensors = self.sensors();
@@ -80,13 +80,13 @@ impl Enumeration<'_> {
         }
     }
 
-    /// Returns true if the waits of sensor `k` are such and fit the sensors before it.
+    /// Returns true if the waits of sensor `k` are valid and fit the sensors before it.
     fn fits(&self, k: usize) -> bool {
         let in_range = self.a[k].max(self.b[k]) <= self.problem.wait_max;
         in_range && self.is_separate(k) && self.in_time(k, 0) && self.in_time(k, 1)
     }
 
-    /// Moves sensor `k` to its next pair of waits, itself included, that fits the sensors before it.
+    /// Moves sensor `k` to its next pair of waits, the present one included, that fits the sensors before it.
     fn seek(&mut self, k: usize) -> bool {
         let wait_max = self.problem.wait_max;
         while self.a[k] <= wait_max {

@@ -1,7 +1,7 @@
 //! The best table: the one with the largest smallest interval, or with the largest separation.
 //!
-//! Both values are monotone: what holds at a value holds at each smaller one. So a bisection over [`decide`] is exact,
-//! and its last infeasible value is the proof. Values that take long wait until the quick ones are decided.
+//! Both are monotone: a table for one value serves for each smaller one. So a bisection over [`decide`] is exact, and
+//! its last infeasible value is the proof. Slow values wait until the quick ones are decided.
 
 use super::feasibility::decide;
 use super::{Budget, Problem, Search};
@@ -21,7 +21,7 @@ pub(crate) enum Objective {
 /// The outcome of a search for the best table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Best {
-    /// Found: the value is proven best. Exhausted: there is no table at all. Budget spent: value and bound are what is
+    /// `Found`: the value is proven best. `Exhausted`: no table exists. `BudgetSpent`: value and bound are the best
     /// known.
     pub(crate) outcome: Outcome,
     /// The best value found, in ticks; the table was written where the caller asked.
@@ -41,7 +41,7 @@ impl Best {
 
 impl Search<'_> {
     /// Finds the table with the greatest value and proves that none is better. `a` and `b` hold the best table found,
-    /// also when the budget ends.
+    /// even if the budget ends first.
     ///
     /// With nothing in conflict the interval is the period; a single sensor has the separation `wait_max`.
     ///
@@ -146,7 +146,7 @@ impl Search<'_> {
     }
 }
 
-/// Nodes a value may take in the first round of a bisection.
+/// Number of nodes for a value in the first round of a bisection.
 const FIRST_SLICE: u64 = 1000;
-/// Nodes spent on a bound from the weaker criterion.
+/// Number of nodes for a bound by the weaker criterion.
 const BOUND_SLICE: u64 = 20_000;

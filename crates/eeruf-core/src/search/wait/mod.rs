@@ -36,6 +36,6 @@ pub use feasibility::memory_words;
 pub(crate) use maximize::{Best, Objective};
 pub(crate) use problem::{MAX_PERIOD, Problem, Search};
 
-/// Words of memory that suffice for every search but counting, with up to [`MAX_SENSORS`] sensors; [`memory_words`]
-/// says it for fewer.
+/// Words of memory that suffice for every search but counting, with up to [`MAX_SENSORS`] sensors; [`memory_words`] is
+/// the number for fewer.
 pub const MEMORY_WORDS: usize = memory_words(MAX_SENSORS);

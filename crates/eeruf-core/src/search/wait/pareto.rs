@@ -1,11 +1,11 @@
-//! The front of interval and separation: the tables that are better in one only where others are better in the other.
+//! The Pareto front of interval and separation: tables that no other beats in one without losing in the other.
 
 use super::{Budget, Objective, Search};
 use crate::search::{Outcome, SearchError};
 
 impl Search<'_> {
-    /// The first point of the front with at least this separation, its interval and separation, with its waits in `a`
-    /// and `b`: no table with at least one of both has more of the other.
+    /// The interval and separation of the first point of the front with at least this separation; its waits are in `a`
+    /// and `b`.
     ///
     /// # Errors
     /// [`SearchError::Memory`] if the memory lent is too small.

@@ -1,9 +1,9 @@
-//! The problem of the waits in ticks, and what waits achieve.
+//! The wait-time problem in ticks, and measures of its solutions.
 
 use crate::requirements::Criterion;
 use crate::search::Members;
 
-/// Longest period, in ticks: sums of a few times stay far within 32 bits.
+/// Longest period, in ticks: sums of several times stay far within 32 bits.
 pub(crate) const MAX_PERIOD: u32 = 1 << 27;
 
 /// The wait-time problem, all times in ticks.
@@ -26,8 +26,8 @@ pub(crate) struct Problem<'a> {
 }
 
 impl Problem<'_> {
-    /// Returns true if the values `|d|` cannot lie `D` apart, which needs `D (K - 1) <= wait_max`, or two sensors
-    /// cannot fire `I` apart, of which one fires before and after the other on the circle of `2 T_p`.
+    /// Returns true if the values `|d|` cannot lie `D` apart, which needs `D (K - 1) <= wait_max`, or if two sensors
+    /// cannot fire `I` apart, each before and after the other on the circle of `2 T_p`.
     pub(super) fn is_beyond_capacity(&self) -> bool {
         let packed = u64::from(self.separation) * (self.lag.len() as u64).saturating_sub(1);
         let conflict = self.conflicts.iter().any(|&row| row != 0);
@@ -42,7 +42,7 @@ pub(crate) struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    /// Takes a problem that was checked: 1 to 64 sensors with symmetric conflicts, which may wait until `wait_max`
+    /// Makes a search of a checked problem: 1 to 64 sensors with symmetric conflicts, waits up to `wait_max` that end
     /// within the period, and a period of at most [`MAX_PERIOD`].
     pub(crate) const fn new(problem: Problem<'a>) -> Self {
         Self { problem }
@@ -63,8 +63,8 @@ impl<'a> Search<'a> {
         Self { problem: Problem { separation, interval, ..self.problem } }
     }
 
-    /// The smallest interval between firings of conflicting sensors for these waits, in ticks, at most the period
-    /// (which it is when nothing conflicts). Zero if there are fewer waits than sensors.
+    /// The smallest interval between firings of conflicting sensors for these waits, in ticks, at most the period,
+    /// which it is if nothing conflicts. Zero if there are fewer waits than sensors.
     pub(super) fn smallest_interval(&self, a: &[u32], b: &[u32]) -> u32 {
         let Problem { period, lag, conflicts, .. } = self.problem;
         let mut smallest = period;

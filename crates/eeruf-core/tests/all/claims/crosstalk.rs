@@ -1,4 +1,4 @@
-//! The promise of the method: where the conditions hold, no crosstalk passes twice running, whatever its path; and a
+//! The promise of the method: where the conditions hold, no crosstalk passes twice in a row, whatever its path; and a
 //! true echo always passes.
 
 use std::collections::VecDeque;
@@ -42,8 +42,8 @@ prop_compose! {
     }
 }
 
-/// Readings of `receiver` if it hears nothing but `emitter`, over one path, for some periods. The caller polls late by
-/// `stalls` now and then.
+/// Readings of `receiver` if it hears nothing but `emitter`, over one path, for some periods. The caller is sometimes
+/// late, by `stalls`.
 fn readings_of_crosstalk(
     schedule: &Schedule<64>,
     config: RingConfig,

@@ -15,9 +15,9 @@ const LAYOUT: Layout = Layout::Line(4);
 
 #[derive(Clone, Debug)]
 enum Call {
-    /// Poll this much later than the deadline (or at once, if that is past), until nothing is due.
+    /// Polls until nothing is due, this much later than the deadline, or at once if that is past.
     PollLate(u32),
-    /// Poll once, this long after the last call; in microseconds of a clock that does not wrap.
+    /// Polls once, this long after the last call, on a clock that does not wrap.
     Poll(u64),
     Echo {
         sensor: u8,
@@ -172,7 +172,7 @@ proptest! {
     }
 }
 
-/// A call about a sensor is refused just where there is none.
+/// Checks that a call about a sensor is refused exactly if the sensor does not exist.
 fn known(sensor: u8, result: Result<(), SensorError>) {
     assert_eq!(result, if sensor < 12 { Ok(()) } else { Err(SensorError { sensor, sensors: 12 }) });
 }

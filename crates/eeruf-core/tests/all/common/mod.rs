@@ -1,5 +1,4 @@
-//! Parts that the tests and benches of the searches share: problems that own their parts, slow judges and the shared
-//! tables.
+//! Parts that the tests of the searches share: owned problems, slow judges and the shared tables.
 
 #![allow(dead_code, missing_docs, unreachable_pub)]
 
@@ -68,14 +67,14 @@ impl Owned {
     }
 }
 
-/// A tick is 2 us, so that D ticks are what a `t_delta` of D - 1 us needs: 2 D - 1 us.
+/// A tick of 2 us: D ticks are then the separation of a `t_delta` of D - 1 us, which needs 2 D - 1 us.
 pub const TICK: Micros = Micros::new(2);
 
 pub fn us(ticks: u32) -> Micros {
     Micros::new(TICK.as_micros() * ticks)
 }
 
-/// Asks in microseconds.
+/// The search for a problem in microseconds.
 pub fn search(problem: &Problem<'_>) -> Result<WaitSearch, SearchError> {
     let lag: Vec<_> = problem.lag.iter().map(|&ticks| us(ticks)).collect();
     WaitSearch::new(&WaitProblem {
@@ -102,7 +101,7 @@ pub fn ticks(time: Micros) -> u32 {
     time.as_micros() / TICK.as_micros()
 }
 
-/// The separation in ticks that a largest `t_delta` stands for.
+/// The separation in ticks for the largest `t_delta`.
 pub fn separation(t_delta: Micros) -> u32 {
     t_delta.as_micros() + 1
 }

@@ -17,10 +17,10 @@ use super::{NONE, Text, World, edge, flat, flat_state, silence};
 use crate::common::random::Random;
 
 const STEPS: u32 = 300;
-/// In the order of their numbers.
+/// All kinds of votes, in the order of their numbers.
 const VOTES: [Votes; 3] = [Votes::ByMotion, Votes::EveryEcho, Votes::TwoInARow];
 
-/// Mostly those of every robot.
+/// Random settings, mostly those of every robot.
 fn settings(r: &mut Random) -> (TurnSettings, BeliefSettings) {
     let (mut turns, mut belief) = (TurnSettings::new(r.within(1, u32::MAX)), BeliefSettings::DEFAULT);
     if r.once_in(2) {
@@ -42,7 +42,7 @@ fn settings(r: &mut Random) -> (TurnSettings, BeliefSettings) {
     (turns, belief)
 }
 
-/// Writes down a ring of any number of sensors.
+/// Records a ring of any number of sensors.
 pub(super) fn run_any(r: &mut Random, text: &mut Text, looks: u32) {
     match r.up_to(6) {
         0 => run::<1>(r, text, looks),
@@ -135,7 +135,7 @@ fn run<const K: usize>(r: &mut Random, text: &mut Text, looks: u32) {
     }
 }
 
-/// Events at and after a firing.
+/// Performs the events at and after a firing.
 fn fired<const K: usize>(
     r: &mut Random,
     text: &mut Text,
@@ -176,7 +176,7 @@ fn fired<const K: usize>(
     world.fired(r, sensor, fired);
 }
 
-/// Does something to the ring.
+/// Performs a random operation on the ring.
 fn operate<const K: usize>(r: &mut Random, text: &mut Text, ring: &mut FlowRing<K>, now: u32) {
     let sensor = r.up_to(K as u32 - 1) as u8;
     match r.up_to(9) {

@@ -1,5 +1,5 @@
-//! The part of the corpus that the tree keeps: of each ring its number of lines and their digest, and from its start as
-//! many lines as show something that no other kept line does.
+//! The part of the corpus that the tree keeps: for each ring its number of lines and their digest, and its first lines
+//! as far as they show something new.
 //!
 //! `# table 67 190 1f2e...` is the title of ring `table 67`; the lines after it are as in the corpus, so that each port
 //! can play them.
@@ -23,8 +23,8 @@ fn title(name: &str, lines: &str) -> String {
     format!("{name} {} {:016x}", lines.lines().count(), digest(lines))
 }
 
-/// The properties of a line for which it may be kept: its letter and event in each family of rings, and the kind,
-/// state, reason and explanation in any.
+/// The properties for which a line may be kept: its letter and event in each family of rings, and the kind, state,
+/// reason and explanation in any.
 fn shown(name: &str, line: &str) -> Vec<String> {
     let family = name.split(' ').next().unwrap_or(name);
     let words = line.split(' ').collect::<Vec<_>>();
@@ -41,7 +41,7 @@ fn shown(name: &str, line: &str) -> Vec<String> {
     }
 }
 
-/// Picks from each ring of the corpus the lines to keep, those first that show most per line.
+/// Picks the lines to keep from each ring of the corpus, those first that show most for each line.
 pub(super) fn of(corpus: &str) -> String {
     let rings = rings(corpus).map(|(name, lines)| (name, lines.lines().collect::<Vec<_>>())).collect::<Vec<_>>();
     let mut kept = vec![0; rings.len()];
@@ -72,7 +72,7 @@ pub(super) fn of(corpus: &str) -> String {
     text
 }
 
-/// The differences of the corpus from what is kept of it, a ring each.
+/// The differences of the corpus from its kept part, one for each ring.
 pub(super) fn differences(golden: &str, corpus: &str) -> String {
     let mut text = String::new();
     let mut now = rings(corpus);

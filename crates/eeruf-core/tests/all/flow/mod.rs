@@ -15,7 +15,7 @@ use world::{Dice, Seen, World};
 
 const DEFAULT: BeliefSettings = BeliefSettings::DEFAULT;
 const CONFIG: RingConfig = RingConfig::new().with_window(Micros::from_millis(25)).with_blanking(Micros::new(300));
-/// The clock wraps after three seconds.
+/// Begin of a run, three seconds before the clock wraps.
 const BEGIN: u32 = u32::MAX - 3_000_000;
 
 /// The share of sensors whose first reading was believed by the second firing and by the third, in percent.
@@ -70,7 +70,7 @@ fn own_walls_are_believed_in_loops_that_are_late() {
     }
 }
 
-/// Firings a second, and the share of readings accepted, of a ring that hears other times after each firing.
+/// Firings a second, and the share of readings accepted, of a ring whose echoes come at random times.
 fn of_chance(belief: BeliefSettings, told_mm_s: Option<u32>) -> (u32, f64) {
     let mut world = World::believing(8, 5, 0, 1, belief);
     let mut seen = vec![Seen::default(); 8];
@@ -377,7 +377,7 @@ fn a_firing_that_was_later_than_its_reading_told_moves_the_rest() {
     assert!(next.0 - later >= 60_000, "{}", next.0 - later);
 }
 
-/// Does something to a ring, by a call that tells no time or by word of its speed.
+/// Performs a random operation without an instant on a ring, or reports a speed.
 fn call<U: OwnLimits>(ring: &mut FlowRing<24, 1, U>, dice: &mut Dice, now: Instant) {
     let sensor = dice.below(ring.sensors() as u32) as u8;
     match dice.below(12) {
@@ -392,7 +392,7 @@ fn call<U: OwnLimits>(ring: &mut FlowRing<24, 1, U>, dice: &mut Dice, now: Insta
     }
 }
 
-/// Polls a ring at each of its deadlines and calls it in between; nothing is late.
+/// Polls a ring at each of its deadlines, calls it in between, and checks that nothing is late.
 fn is_never_late<U: OwnLimits>(mut ring: FlowRing<24, 1, U>, seed: u32, mut now: Instant) {
     let (mut dice, mut fired) = (Dice { state: seed.into(), travel: 0 }, 0);
     for _ in 0..2_000 {
@@ -430,7 +430,7 @@ fn no_call_makes_a_loop_late_that_polls_in_time() {
     }
 }
 
-/// Kinds of the readings of a sensor before which a wall stands for 30 firings, and then is not heard at these.
+/// Kinds of a sensor's readings at these firings, after its wall stood for 30 firings and then disappeared.
 fn after_a_wall(alone: bool, speed_mm_s: u32, echoes: [bool; 3]) -> Vec<ReadingKind> {
     let belief = BeliefSettings { alone, ..BeliefSettings::DEFAULT };
     let config = RingConfig::new().with_window(Micros::from_millis(25)).with_blanking(Micros::new(300));

@@ -9,7 +9,7 @@ use eeruf_core::{
 use super::world::{Dice, Operates, Seen, World};
 use super::{BEGIN, CONFIG, DEFAULT};
 
-/// The place at which doubt is held, if it is.
+/// The value at which doubt is held, if it is.
 #[derive(Clone, Copy, Debug)]
 enum Doubt {
     Free,
@@ -17,8 +17,8 @@ enum Doubt {
     AtMost,
 }
 
-/// Receivers without a wall of their own hear one path each, from one sensor, whatever is done to the ring: up to `E`
-/// echoes of a firing. Returns the number of their readings that were compared, and how many were believed.
+/// Receivers without a wall of their own hear one path each, from one sensor, whatever is done to the ring, with up to
+/// `E` echoes of a firing. Returns the number of readings compared, and of those believed.
 fn one_path<const E: usize>(seed: u32, speed_mm_s: u16, changes: bool, doubt: Doubt) -> (u32, u32) {
     let mut dice = Dice { state: u64::from(seed) << 20 | 77, travel: 0 };
     let sensors = 2 + dice.below(11) as usize;
@@ -69,7 +69,7 @@ fn one_path<const E: usize>(seed: u32, speed_mm_s: u16, changes: bool, doubt: Do
     heard.fold((0, 0), |sum, (seen, _)| (sum.0 + seen.compared, sum.1 + seen.accepted))
 }
 
-/// The longest path, in nanoseconds: with what it changes by it is heard for R.
+/// The longest path, in nanoseconds: with its change it stays within R.
 const LONGEST: i64 = 33_350_000;
 
 /// A path of sound to a receiver. Times are in nanoseconds.
@@ -77,14 +77,14 @@ struct Path {
     emitter: u8,
     shortest: i64,
     length: i64,
-    /// The change that it might have shown when it was last heard.
+    /// The accumulated change that the path might have shown when it was last heard.
     travelled: u64,
     direction: i64,
 }
 
 impl Path {
-    /// The microseconds after which sound is heard along it. Two readings in a row see it change by at most P, and what
-    /// the motion gives in between.
+    /// The microseconds after which sound arrives along it. Two consecutive readings see it change by at most P and
+    /// what the motion allows.
     fn heard_after(&mut self, dice: &mut Dice) -> u64 {
         let most = (dice.travel - self.travelled) as i64;
         self.travelled = dice.travel;

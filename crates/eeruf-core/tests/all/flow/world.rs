@@ -1,4 +1,4 @@
-//! A world of true time around a ring that fires in turn, and someone who does all that can be done to it.
+//! A world of true time around a flow ring, and an operator that calls all of its operations.
 
 use eeruf_core::{
     Instant, Micros, ReadingKind, Ring, RingEvent, Silence,
@@ -8,7 +8,7 @@ use eeruf_core::{
 
 use super::{BEGIN, CONFIG, DEFAULT};
 
-/// A generator of the tests' own, and by how much a path may have changed since the beginning, in ns.
+/// A random generator, and the change in ns that a path may have shown since the beginning.
 pub(super) struct Dice {
     pub(super) state: u64,
     pub(super) travel: u64,
@@ -26,31 +26,31 @@ pub(super) struct World<P = InTurn<24>, const E: usize = 1> {
     pub(super) ring: Ring<P, Belief<24, E>, 24, E, 3>,
     begin: u32,
     pub(super) now: u64,
-    /// When a line will be seen to have fallen, its sensor, and since when it may have.
+    /// Edges to come: when the fallen line will be seen, the sensor, and the earliest time of the edge.
     edges: Vec<(u64, u8, u64)>,
-    /// Edges are known to lie within intervals of up to this.
+    /// Greatest width of the intervals within which edges are known to lie.
     pub(super) uncertain: u32,
     pub(super) dice: Dice,
-    /// Polls come late by up to this.
+    /// Greatest lateness of polls.
     pub(super) late: u32,
     pub(super) tick: u32,
-    /// The latest step so far, as the ring says.
+    /// Greatest lateness of a step so far, as the ring reports it.
     pub(super) latest: u32,
-    /// When which sensor fired.
+    /// Firings: instant and sensor.
     pub(super) fired: Vec<(u64, u8)>,
     pub(super) operates: Option<Operates>,
 }
 
-/// Someone who does all that can be done to a ring.
+/// An operator that calls all operations of a ring.
 #[derive(Clone, Copy)]
 pub(super) struct Operates {
     pub(super) speed_mm_s: u32,
-    /// The top speed, if the speed changes from 0 to it.
+    /// The top speed, if the speed varies from 0 to it.
     pub(super) top_mm_s: Option<u32>,
-    /// When the speed was last told, or began.
+    /// Instant of the last report of speed, or the beginning.
     pub(super) told: u64,
     pub(super) asleep_until: u64,
-    /// The ring is paused: it is not for long, since a paused ring hears nothing.
+    /// True while the ring is paused; pauses are short, since a paused ring hears nothing.
     pub(super) paused: bool,
 }
 
@@ -59,9 +59,9 @@ pub(super) struct Seen {
     pub(super) fired: u32,
     pub(super) accepted: u32,
     pub(super) ambiguous: u32,
-    /// Echoes that had one before to compare with.
+    /// Number of echoes that were compared with an earlier one.
     pub(super) compared: u32,
-    /// Firings until the first was accepted.
+    /// Number of firings until the first reading was accepted.
     pub(super) first: Option<u32>,
 }
 
@@ -103,7 +103,7 @@ impl<P: Plan, const E: usize> World<P, E> {
         Instant::from_micros(self.begin.wrapping_add(true_time as u32))
     }
 
-    /// Moves the path, as far as it may have changed by some time.
+    /// Moves the path by at most the change allowed up to an instant.
     fn travel(&mut self, until: u64) {
         if let Some(of) = &mut self.operates {
             // By twice the speed over that of the slowest sound.
@@ -112,7 +112,7 @@ impl<P: Plan, const E: usize> World<P, E> {
         }
     }
 
-    /// Does something to the ring.
+    /// Performs a random operation on the ring.
     fn operate(&mut self) {
         self.travel(self.now);
         let Some(mut of) = self.operates else { return };
@@ -161,7 +161,7 @@ impl<P: Plan, const E: usize> World<P, E> {
         self.operates = Some(of);
     }
 
-    /// Hands in an edge, by one of the ways that there are.
+    /// Reports an edge by one of the ring's methods.
     fn hear(&mut self, sensor: u8, earliest: u64, latest: u64) {
         let [first, last] = [earliest, latest].map(|at| self.instant(at));
         let settled = last + Micros::new(self.dice.below(400));
@@ -183,7 +183,7 @@ impl<P: Plan, const E: usize> World<P, E> {
         }
     }
 
-    /// Reports of a sensor that is fired.
+    /// Reports the state of a sensor that fired.
     fn report(&mut self, sensor: u8) {
         match self.dice.below(64) {
             0 => self.ring.stuck(sensor).unwrap(),
@@ -194,7 +194,7 @@ impl<P: Plan, const E: usize> World<P, E> {
         }
     }
 
-    /// When a sensor fires that is asked to: a little sooner or later, as the ring is told.
+    /// The instant at which a sensor that is asked to fires: a little sooner or later, as the ring is told.
     fn fire(&mut self, sensor: u8) -> u64 {
         if self.operates.is_none() {
             return self.now;
@@ -213,7 +213,7 @@ impl<P: Plan, const E: usize> World<P, E> {
         at
     }
 
-    /// Runs until some time; `sound` says when a line falls after a firing, of whose sensors.
+    /// Runs until an instant; `sound` gives the times after a firing at which lines fall, and their sensors.
     pub(super) fn run(
         &mut self,
         until: u64,

@@ -1,6 +1,6 @@
-//! The promise of a ring whatever was fired when: one path of sound that is audible for no longer than R and changes by
-//! no more than P is never accepted, and what nothing foreign explains is. In [`world`] everything is done to a ring
-//! that can be; [`model`] is the rule by an account that forgets nothing.
+//! The promise of a ring, whatever was fired when: one path of sound that is audible for no longer than R and changes
+//! by no more than P is never accepted, and a reading that nothing foreign explains always is. [`world`] performs every
+//! operation on a ring; [`model`] applies the rule and forgets nothing.
 //!
 //! The long run: `EERUF_SOUND=10000000 cargo test --release -p eeruf-core --test all -- sound`.
 
@@ -18,7 +18,7 @@ use crate::common::random::Random;
 use model::Sound;
 use world::{Count, Course, Heard, ROOM, STEPS, World};
 
-/// A table and the `t_delta` that it is good for, verified or not.
+/// A table, verified or not, and the largest `t_delta` that it serves.
 struct Table {
     schedule: Schedule<ROOM>,
     verified: Option<VerifiedSchedule<ROOM>>,
@@ -46,7 +46,7 @@ fn random_table(random: &mut Random) -> Table {
     Table { schedule, verified: None, t_delta: 100 + random.up_to(1500) }
 }
 
-/// A table that `design` gives for random needs.
+/// A table that `design` returns for random needs.
 fn designed_table(random: &mut Random) -> Table {
     let sensors = 2 + random.up_to(22) as usize;
     let requirements = Requirements {
@@ -79,7 +79,7 @@ fn tables(count: usize, random: &mut Random) -> Vec<Table> {
     tables
 }
 
-/// One run of a table: each sensor hears one path, and everything happens to the ring.
+/// Runs a table once: each sensor hears one path, and every operation is performed on the ring.
 fn run_paths(table: &Table, others: &[VerifiedSchedule<ROOM>], random: &mut Random, compared: u64) -> Vec<Count> {
     let start = (1_u64 << 32) - u64::from(random.up_to(3_000_000));
     let most = table.verified.map_or(table.schedule.min_refire(), |verified| verified.window());
@@ -180,7 +180,7 @@ fn edges_between_two_looks_let_no_path_in_on_time() {
     assert!(agree > 1_000, "{agree}");
 }
 
-/// A wall before each sensor, somewhere in its window.
+/// Random walls, one within each sensor's window.
 fn walls(sensors: usize, window: u32, random: &mut Random) -> Vec<Heard> {
     (0..sensors).map(|_| Heard::Wall { t_echo: 1_000 + random.up_to(window - 2_000) }).collect()
 }
@@ -220,7 +220,7 @@ fn walls_that_nothing_explains_are_accepted() {
 
 /// A main loop.
 struct Loop {
-    /// The loop comes round after up to this many microseconds; 0 if it sleeps until something is due.
+    /// Longest time between two rounds of the loop in microseconds; 0 if it sleeps until something is due.
     round: u32,
     /// Microseconds that each event takes.
     handling: u32,
@@ -228,7 +228,7 @@ struct Loop {
     lasts: u32,
 }
 
-/// The share of readings that are accepted of each sensor in a main loop, where each sensor sees its own wall.
+/// For each sensor, the share of accepted readings in a main loop, if each sensor sees its own wall.
 fn in_a_loop(schedule: &Schedule<ROOM>, t_delta: u32, path_change: u32, course: &Loop, seed: u64) -> Vec<f64> {
     let (sensors, window) = (schedule.sensors(), 20_000);
     let config = RingConfig::new()

@@ -1,4 +1,4 @@
-//! The rule of docs/explanation/theory.md section 2.1 by an account of all firings in true time, written from the
+//! The rule of docs/explanation/theory.md section 2.1, applied to all firings in true time and written from the
 //! document.
 
 use eeruf_core::Reading;
@@ -12,12 +12,12 @@ struct Sensor {
     last: Option<(u64, u64)>,
 }
 
-/// Every firing there was, and the last reading of each sensor.
+/// All firings, and the last reading of each sensor.
 pub(super) struct Model {
     sensors: Vec<Sensor>,
 }
 
-/// A reading that agrees with the one before, as the model sees it.
+/// The model's finding on a reading that agrees with the one before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Compared {
     /// Some firings explain both.
@@ -39,18 +39,18 @@ impl Model {
         Self { sensors: vec![Sensor::default(); sensors] }
     }
 
-    /// A sensor fired at this instant.
+    /// Records a firing of a sensor at this instant.
     pub(super) fn fired(&mut self, sensor: u8, at: u64) {
         self.sensors[usize::from(sensor)].fired.push(at);
     }
 
-    /// A sensor has nothing to compare its next reading with.
+    /// Forgets a sensor's last reading.
     pub(super) fn forget(&mut self, sensor: u8) {
         self.sensors[usize::from(sensor)].last = None;
     }
 
-    /// Takes in a reading of the sensor's last firing, and the change that odometry expects. `None` if it has no echo,
-    /// nothing before it, or does not agree.
+    /// Records the reading of the sensor's last firing, and the change that odometry expects. Returns `None` if it has
+    /// no echo, nothing before it, or does not agree.
     pub(super) fn read(&mut self, reading: &Reading, sound: Sound, change: i32) -> Option<Compared> {
         let y = usize::from(reading.sensor);
         let f2 = *self.sensors[y].fired.last()?;

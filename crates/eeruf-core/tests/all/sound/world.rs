@@ -1,5 +1,5 @@
 //! A world in true time around a ring: sound that travels along one path to each sensor, or a wall before each, a clock
-//! that wraps and steps back, polls that come late, and all that can be done to a ring.
+//! that wraps and steps back, late polls, and every operation on a ring.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -16,7 +16,7 @@ pub(super) const ROOM: usize = 24;
 /// Largest step back of the clock between two readings that are compared.
 pub(super) const STEPS: u32 = 12;
 
-/// Sounds that each sensor hears.
+/// The sound that each sensor hears.
 #[derive(Clone, Copy)]
 pub(super) enum Heard {
     /// Sound of one emitter along one path of at least this many microseconds.
@@ -25,14 +25,14 @@ pub(super) enum Heard {
     Wall { t_echo: u32 },
 }
 
-/// The course of a run.
+/// Conditions of a run.
 #[derive(Clone, Copy)]
 pub(super) struct Course {
-    /// Polls come late by up to this many microseconds; every 64th by up to eight times as much.
+    /// Greatest lateness of polls in microseconds; every 64th is up to eight times as late.
     pub(super) late: u32,
-    /// This many microseconds pass at each event.
+    /// Microseconds that pass at each event.
     pub(super) handling: u32,
-    /// One of this many events is followed by something that is done to the ring; 0 for never.
+    /// One of this many events is followed by a random operation on the ring; 0 for never.
     pub(super) operations: u32,
     /// One of this many firings comes at another instant than its poll; 0 for never.
     pub(super) fired: u32,
@@ -41,12 +41,12 @@ pub(super) struct Course {
     /// The change of echoes that odometry expects, in microseconds a second, and the most by which that is wrong.
     pub(super) expected: i64,
     pub(super) noise: u32,
-    /// Edges are known to lie within intervals of up to this many microseconds; one of 64 within 4 ms.
+    /// Greatest width, in microseconds, of the intervals within which edges are known to lie; one of 64 is up to 4 ms.
     pub(super) uncertain: u32,
 }
 
 impl Course {
-    /// Polls on time, by a robot that stands.
+    /// Polls on time, and a robot that stands.
     pub(super) const PUNCTUAL: Self =
         Self { late: 0, handling: 0, operations: 0, fired: 0, clock_steps: 0, expected: 0, noise: 0, uncertain: 0 };
 }
@@ -73,14 +73,14 @@ pub(super) struct World<'s> {
     random: Random,
     model: Model,
     now: u64,
-    /// Distance of the ring's clock behind true time.
+    /// Time by which the ring's clock is behind true time.
     behind: u64,
-    /// Steps of the clock since each sensor's last reading but one are at most [`STEPS`].
-    /// Edges that are still to come, by when they are seen: receiver, and since when they may have come.
+    /// Edges to come, by when they are seen: the receiver, and the earliest time of the edge. Steps of the clock since
+    /// each sensor's last reading but one are at most [`STEPS`].
     arrivals: BinaryHeap<Reverse<(u64, u8, u64)>>,
-    /// Firings whose true instant comes later: when, the sensor, the instant.
+    /// Firings whose true instant is reported later: the time of the report, the sensor, the instant.
     corrections: Vec<(u64, u8, u64)>,
-    /// Echo time of each sensor's last reading, which a foreign path tries to meet again.
+    /// Echo time of each sensor's last reading, which a foreign path tries to match.
     last_echo: Vec<Option<u32>>,
     last_fired: Vec<u64>,
     /// The change that odometry expects of each sensor's reading.
@@ -170,7 +170,7 @@ impl<'s> World<'s> {
         }
     }
 
-    /// Hands in the edges that have come by now.
+    /// Reports the edges that have come by now.
     fn deliver(&mut self) {
         while let Some(&Reverse((latest, receiver, earliest))) = self.arrivals.peek() {
             if latest > self.now {
@@ -185,7 +185,7 @@ impl<'s> World<'s> {
         }
     }
 
-    /// Hands in an edge, by one of the ways that there are.
+    /// Reports an edge by one of the ring's methods.
     fn hear(&mut self, receiver: u8, earliest: u64, latest: u64) {
         let [first, last] = [earliest, latest].map(|at| self.clock(at));
         let fired = self.ring.last_firing(receiver).unwrap();
@@ -208,7 +208,7 @@ impl<'s> World<'s> {
         }
     }
 
-    /// An interval in which an edge is known to lie: its length, and from its beginning to the edge.
+    /// A random interval within which an edge is known to lie: its length, and the time from its beginning to the edge.
     fn interval(&mut self) -> (u64, u64) {
         let most = self.course.uncertain;
         if most == 0 {
@@ -271,8 +271,8 @@ impl<'s> World<'s> {
         }
     }
 
-    /// The length of a path, which never changes by more than it may: such that the receiver reads what it read before,
-    /// or what odometry expects after that, if that can be. The middle of the edge's interval comes `off` before it.
+    /// The length of a path, which never changes faster than it may. If it can, it makes the receiver repeat its last
+    /// reading, or show the change that odometry expects. The middle of the edge's interval comes `off` before it.
     fn length(&mut self, receiver: usize, least: u32, at: u64, off: i64) -> u32 {
         // A step of the clock between the two sounds changes what the ring sees of it as well.
         let steps = if self.course.clock_steps > 0 { STEPS } else { 0 };
@@ -313,7 +313,7 @@ impl<'s> World<'s> {
         self.last_echo[y] = reading.t_echo.map(Micros::as_micros);
     }
 
-    /// Does something to the ring.
+    /// Performs a random operation on the ring.
     fn operate(&mut self) {
         let sensors = self.heard.len() as u32;
         let sensor = self.random.up_to(sensors - 1) as u8;

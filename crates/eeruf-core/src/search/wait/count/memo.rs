@@ -1,16 +1,17 @@
-//! Remainders already counted, in lent memory: a hash table that may forget but never confuses.
+//! A hash table, in lent memory, of the remainders that were already counted. It may forget entries but never confuses
+//! them.
 
 use crate::schedule::MAX_SENSORS;
 
 /// Words of the longest key: the level, three masks and two for each sensor touched, each mask in two words.
 const KEY_WORDS: usize = 1 + 2 * (3 + 2 * MAX_SENSORS);
-/// Words of an entry beside its key: a serial number (0 when counted) and the count.
+/// Words of an entry besides its key: a serial number (0 when counted) and the count.
 const ENTRY_WORDS: usize = 1 + 4;
-/// Entries looked at for a key.
+/// Number of entries tried for a key.
 const PROBES: usize = 4;
-/// Entries used at first.
+/// Number of entries used at first.
 const FIRST_ENTRIES: usize = 512;
-/// Number of times more that are used when those are half full.
+/// Factor by which the number of entries grows when they are half full.
 const GROWTH: usize = 8;
 
 /// A remainder as words.
@@ -22,12 +23,12 @@ pub(super) struct Key {
 }
 
 impl Key {
-    /// No key yet; masks above 32 bits are `wide`.
+    /// An empty key; masks above 32 bits are `wide`.
     pub(super) const fn new(wide: bool) -> Self {
         Self { words: [0; KEY_WORDS], len: 0, wide, hash: 0 }
     }
 
-    /// Starts the key of a level, which is part of it.
+    /// Starts the key of a level; the level is part of it.
     pub(super) fn start(&mut self, level: usize) {
         (self.len, self.hash) = (0, 0);
         // Not zero, which marks an empty entry.
@@ -51,7 +52,7 @@ impl Key {
     }
 }
 
-/// The place where the count of a key belongs, unless another key took it meanwhile.
+/// The place for the count of a key, valid until another key takes it.
 #[derive(Clone, Copy)]
 pub(super) struct Ticket {
     entry: usize,
@@ -62,7 +63,7 @@ pub(super) struct Ticket {
 pub(super) struct Memo<'m> {
     slots: &'m mut [u32],
     words: usize,
-    /// Entries that fit, and the part of them in use.
+    /// Number of entries that fit, and number in use.
     entries: usize,
     active: usize,
     /// Entries written since the part in use was cleared.
@@ -80,8 +81,8 @@ impl<'m> Memo<'m> {
         memo
     }
 
-    /// Clears and uses the first `active` entries: a short count does not pay for clearing all the memory lent. Growing
-    /// forgets, but so seldom that it costs a small part of the work.
+    /// Clears and uses the first `active` entries, so that a short count need not clear all the lent memory. Growing
+    /// forgets entries, but seldom enough to cost little.
     fn use_first(&mut self, active: usize) {
         self.active = active.min(self.entries);
         self.written = 0;
@@ -94,7 +95,7 @@ impl<'m> Memo<'m> {
         self.entries > 0
     }
 
-    /// The count kept for a key, or the place for it.
+    /// The stored count of a key, or the place for it.
     pub(super) fn look_up(&mut self, key: &Key) -> Result<u128, Ticket> {
         if self.written > self.active / 2 && self.active < self.entries {
             self.use_first(self.active.saturating_mul(GROWTH));
@@ -130,7 +131,7 @@ impl<'m> Memo<'m> {
         Err(Ticket { entry: place, serial: self.serial })
     }
 
-    /// Keeps a count where its ticket says.
+    /// Stores a count at the place of its ticket.
     pub(super) fn keep(&mut self, ticket: Ticket, count: u128) {
         let end = (ticket.entry + 1) * self.words;
         let Some([serial, w0, w1, w2, w3]) = self.slots.get_mut(end - ENTRY_WORDS..end) else {
@@ -143,7 +144,7 @@ impl<'m> Memo<'m> {
     }
 }
 
-/// Returns true if the words of a key are those kept: a dozen or so, fewer than a call is worth.
+/// Returns true if an entry has the words of a key: a dozen or so, too few to be worth a call.
 #[inline]
 fn same(own: &[u32], key: &[u32; KEY_WORDS]) -> bool {
     own.iter().zip(key).fold(0, |differ, (x, y)| differ | (x ^ y)) == 0

@@ -20,9 +20,8 @@ use crate::search::Outcome;
 use bits::MASK_MAX;
 use walk::Counting;
 
-/// A sensible amount of memory for [`WaitSearch::count`](crate::search::WaitSearch::count) where there is plenty, in
-/// words (4 MiB): a choice.
-/// With less the count is the same, and slower: 1 KiB where `usize` has 16 bits.
+/// A sensible amount of memory for [`WaitSearch::count`](crate::search::WaitSearch::count) on a PC, in words (4 MiB): a
+/// choice. Less memory gives the same count more slowly. On targets with 16-bit `usize` it is 1 KiB.
 pub const COUNT_WORDS: usize = 1 << if usize::BITS > 16 { 20 } else { 8 };
 
 impl Search<'_> {

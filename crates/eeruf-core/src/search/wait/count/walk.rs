@@ -1,4 +1,4 @@
-//! The walk of a count: depth first over the sensors by number, each of which is a level.
+//! The depth-first walk of a count over the sensors by number, each of which is a level.
 
 use super::super::{Budget, Problem};
 use super::bits::{left_by, reach, span, waits_with};
@@ -18,17 +18,17 @@ struct Free {
 #[derive(Clone, Copy)]
 struct Level {
     free: Free,
-    /// Waits a and b that the sensors placed before leave to this level's sensor.
+    /// Waits a and b that the sensors before leave to this level's sensor.
     left: [u64; 2],
-    /// The |d| still to be tried.
+    /// Values of |d| still to be tried.
     d_left: u64,
-    /// The d under way.
+    /// The current d.
     d: i32,
-    /// The waits a still to be tried with it.
+    /// Waits a still to be tried with it.
     a_left: u64,
-    /// The tables counted when the level was entered.
+    /// The count of tables when the level was entered.
     entered_at: u128,
-    /// Destination of the count when the level is finished.
+    /// Ticket for the count of the finished level.
     ticket: Option<Ticket>,
 }
 
@@ -37,16 +37,16 @@ impl Level {
         Self { free: Free { d: 0, s: [0; 2] }, left: [0; 2], d_left: 0, d: 0, a_left: 0, entered_at: 0, ticket: None };
 }
 
-/// The count under way.
+/// A count in progress.
 pub(super) struct Counting<'p, 'm> {
     problem: &'p Problem<'p>,
-    /// By sensor: those that can fire too close to it.
+    /// For each sensor, those that can fire too close to it.
     near: [u64; MAX_SENSORS],
-    /// By level: the sensors to come, this level's included, that are near one placed before.
+    /// For each level, the sensors to come, its own included, that can fire too close to one placed before.
     touched: [u64; MAX_SENSORS],
-    /// By sensor: its waits, while it is placed.
+    /// For each sensor, its waits while it is placed.
     wait: [[u8; 2]; MAX_SENSORS],
-    /// By sensor: the waits a and b left to it at the level surveyed last.
+    /// For each sensor, the waits a and b left to it at the level surveyed last.
     left: [[u64; 2]; MAX_SENSORS],
     levels: [Level; MAX_SENSORS],
     key: Key,
@@ -128,13 +128,13 @@ impl<'p, 'm> Counting<'p, 'm> {
         }
     }
 
-    /// The total of a walk that looked at everything.
+    /// The total of a finished walk.
     fn counted(&self, limit: u128) -> (Outcome, u128) {
         let outcome = if self.total >= limit { Outcome::Found(()) } else { Outcome::Exhausted };
         (outcome, self.total)
     }
 
-    /// Adds the tables below one pair of the level above `level`.
+    /// Adds the tables below one pair of the level before `level`.
     fn add(&mut self, level: usize, tables: u128) {
         // Exchanging the phases turns each table whose first sensor has d > 0 into one with d < 0: the walk leaves
         // those out.
@@ -142,7 +142,7 @@ impl<'p, 'm> Counting<'p, 'm> {
         self.total = self.total.saturating_add(if twice { tables.saturating_mul(2) } else { tables });
     }
 
-    /// Enters a level; `false` if it holds no table or is counted already.
+    /// Enters a level; `false` if it has no table or was counted already.
     fn enter(&mut self, level: usize, free: Free) -> bool {
         if !self.has_room(free.d, self.problem.lag.len() - level) || !self.survey(level) {
             return false;
@@ -164,8 +164,8 @@ impl<'p, 'm> Counting<'p, 'm> {
         true
     }
 
-    /// Finds the waits left to the sensors that those placed touch; `false` if one of them has none. To the others all
-    /// are left, as they were from the start.
+    /// Finds the waits left to the sensors that can fire too close to placed ones; `false` if one has none. All other
+    /// sensors still have all waits.
     fn survey(&mut self, level: usize) -> bool {
         Members(self.touched[level]).all(|j| {
             self.left[j] = self.left_to(j, level);
@@ -173,7 +173,7 @@ impl<'p, 'm> Counting<'p, 'm> {
         })
     }
 
-    /// Places the next pair of waits of a level; returns what it leaves free.
+    /// Places the next pair of waits of a level; returns the values that it leaves free.
     fn place_next(&mut self, level: usize) -> Option<Free> {
         let paper = self.problem.criterion == Criterion::Paper;
         let Level { free, left, mut d_left, mut d, mut a_left, .. } = self.levels[level];
@@ -206,7 +206,7 @@ impl<'p, 'm> Counting<'p, 'm> {
         Some(free)
     }
 
-    /// The number of pairs that complete a table for the last sensor.
+    /// The number of pairs with which the last sensor completes a table.
     fn completions(&self, free: Free, left: [u64; 2]) -> u128 {
         let paper = self.problem.criterion == Criterion::Paper;
         let mut tables = 0;
@@ -245,7 +245,7 @@ impl<'p, 'm> Counting<'p, 'm> {
         left
     }
 
-    /// Stores what a level surveyed leaves to be counted, the same for partial tables with the same completions.
+    /// Builds the key of a surveyed level, which is equal for partial tables with the same completions.
     fn set_key(&mut self, level: usize, free: Free) {
         self.key.start(level);
         self.key.push(free.d);

@@ -1,4 +1,4 @@
-//! Branchings of the search of a table, packed into lent words.
+//! Branchings of the search for a table, packed into lent words.
 
 use super::super::difference_constraints::Order;
 

@@ -1,4 +1,4 @@
-//! Is there a table at all? Orders first, then ranks of `|d|`, then values only where ranks do not decide them.
+//! Decides if a table exists: by orders first, then by ranks of `|d|`, then by values if ranks do not decide them.
 //!
 //! Sensors get their ranks from the greatest `|d|` down. The sensor of rank `r` has `|d| >= D r`, and as those above it
 //! take their share, `|d| <= wait_max - D (K - 1 - r)`. Each branch is tested with the least waits that its difference
@@ -67,7 +67,7 @@ pub(super) fn decide(
     }
 }
 
-/// One walk. Not inlined, so that no more than one is on the stack.
+/// Walks once. Not inlined, so that only one walk is on the stack.
 #[inline(never)]
 fn walk(
     problem: &Problem<'_>,
@@ -79,7 +79,7 @@ fn walk(
     Feasibility::new(problem, memory, style).run(budget, wait)
 }
 
-/// Nodes that each style may take in the first round.
+/// Number of nodes for each style in the first round.
 const FIRST_SLICE: u64 = 200;
 
 const STYLES: [Style; 5] = [
@@ -118,7 +118,7 @@ impl Search<'_> {
         if words < needed { Err(SearchError::Memory { words, needed }) } else { Ok(()) }
     }
 
-    /// Writes the waits, `a` and `b` alternating, where the caller asked.
+    /// Copies the waits, `a` and `b` alternating, to the caller's slices.
     pub(super) fn hand_out(&self, wait: &[i32; 2 * MAX_SENSORS], a: &mut [u32], b: &mut [u32]) {
         for (node, &wait) in wait.iter().enumerate().take(2 * self.sensors()) {
             let phase = if node % 2 == 0 { &mut *a } else { &mut *b };

@@ -1,4 +1,4 @@
-//! Depth first over orders, ranks and values, with the least waits that the difference constraints allow.
+//! The depth-first walk over orders, ranks and values, with the least waits that the difference constraints allow.
 
 use super::super::difference_constraints::{Constraints, Order};
 use super::super::{Budget, Problem};
@@ -7,19 +7,18 @@ use crate::requirements::Criterion;
 use crate::schedule::MAX_SENSORS;
 use crate::search::{Members, Outcome};
 
-/// The way in which a search walks. Each style is exhaustive in what it looks at; only a tight one does not look at
-/// everything.
+/// The style of a search. All styles are exhaustive in what they search; only the tight one does not search everything.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Style {
-    /// Only `|d| = D r` is looked at.
+    /// True to search only `|d| = D r`.
     pub(super) tight: bool,
-    /// Sums are separated as soon as there are two, not after all ranks.
+    /// True to separate sums as soon as there are two, not after all ranks.
     pub(super) early_sums: bool,
-    /// The greatest ranks go to the last sensors of a lag first.
+    /// True to try the last sensors of a lag first for the greatest ranks.
     pub(super) backwards: bool,
 }
 
-/// The trail: two words a branch, the branch itself and how many of its alternatives were tried.
+/// The trail: two words for each branch, the branch and the number of its alternatives that were tried.
 pub(super) struct Feasibility<'p, 'm> {
     problem: &'p Problem<'p>,
     sensors: usize,
@@ -28,15 +27,15 @@ pub(super) struct Feasibility<'p, 'm> {
     constraints: Constraints<'p>,
     /// Sensors in the order in which ranks try them: by lag, then by number.
     preferred: [u8; MAX_SENSORS],
-    /// By rank: the sensor that has it and whether its `d` is negative.
+    /// For each rank, its sensor and the sign of that sensor's `d`.
     holder: [(u8, bool); MAX_SENSORS],
     /// Sensors without a rank.
     unranked: u64,
-    /// Ranks from this one up have a sensor; K when none has.
+    /// The lowest rank that has a sensor; K if none has.
     ranked: usize,
-    /// Ranks from this one up have a value; K when none has.
+    /// The lowest rank that has a value; K if none has.
     valued: usize,
-    /// By rank: its value.
+    /// For each rank, its value.
     value: [i32; MAX_SENSORS],
 }
 
@@ -185,7 +184,7 @@ impl<'p, 'm> Feasibility<'p, 'm> {
         None
     }
 
-    /// Takes the first alternative of a branch, from `tried` on, that leaves the constraints satisfiable.
+    /// Takes the first alternative of a branch, from `tried` on, for which the constraints can be met.
     fn take(&mut self, branch: Branch, tried: u32) -> Option<u32> {
         let before = self.constraints.wait;
         let mut alternative = tried;
@@ -274,7 +273,7 @@ impl<'p, 'm> Feasibility<'p, 'm> {
         if by_lag == (alternative == 0) { order } else { Order { phase, first: second, second: first } }
     }
 
-    /// Returns true if `|d| = D r` is all that needs looking at; known once the orders are chosen.
+    /// Returns true if only `|d| = D r` need be searched; known once the orders are chosen.
     fn is_tight(&self) -> bool {
         self.style.tight || self.problem.criterion == Criterion::Exact && self.constraints.same_orders()
     }
@@ -286,7 +285,7 @@ impl<'p, 'm> Feasibility<'p, 'm> {
         if self.holder[rank].1 && rank >= self.ranked { low.max(1) } else { low }
     }
 
-    /// The greatest `|d|` of a rank, which leaves room for those above it.
+    /// The greatest `|d|` of a rank, which leaves room for the ranks above.
     fn high(&self, rank: usize) -> i32 {
         let separation = self.problem.separation as i32;
         if self.ranked < self.sensors && self.is_tight() {
@@ -318,14 +317,14 @@ impl<'p, 'm> Feasibility<'p, 'm> {
         }
     }
 
-    /// Writes a branch and the alternative taken to the trail.
+    /// Writes a branch and its current alternative to the trail.
     fn keep(&mut self, depth: usize, branch: Branch, taken: u32) {
         if let Some([word, alternative]) = self.trail.get_mut(2 * depth..2 * depth + 2) {
             (*word, *alternative) = (branch.pack(), taken);
         }
     }
 
-    /// Reads it back.
+    /// Reads a branch and its alternative from the trail.
     fn read_back(&self, depth: usize) -> (Branch, u32) {
         match self.trail.get(2 * depth..2 * depth + 2) {
             Some(&[word, taken]) => (Branch::unpack(word), taken),
@@ -334,13 +333,13 @@ impl<'p, 'm> Feasibility<'p, 'm> {
     }
 }
 
-/// The fate of an alternative.
+/// The result of entering an alternative.
 enum Applied {
     /// The alternative stands.
     Done,
     /// Another alternative covers it.
     Skip,
-    /// There is none of that number.
+    /// No alternative has that number.
     None,
 }
 

@@ -9,7 +9,7 @@ use crate::lines::Pins;
 use crate::ring::{Edges, HcSr04Ring};
 use crate::settings::Settings;
 
-/// The clock of a ring that waits for its lines, and their levels when they were last looked at.
+/// The clock of a ring that waits for its lines, and the levels last seen on them.
 #[derive(Debug)]
 pub struct Awaited<C> {
     clock: C,
@@ -32,7 +32,7 @@ where
     D: embedded_hal::delay::DelayNs + embedded_hal_async::delay::DelayNs,
     C: Fn() -> Instant,
 {
-    /// Puts a ring on pins that can be waited for, with a delay that blocks (for a trigger) and waits, and a clock.
+    /// Puts a ring on pins that can be awaited, with a clock and a delay that can both block (for a trigger) and await.
     ///
     /// # Errors
     /// As for [`new`](HcSr04Ring::new).
@@ -47,12 +47,12 @@ where
         Self::with_edges(ring, pins, delay, settings, Awaited { clock, high: 0, looked })
     }
 
-    /// The next reading. Fires what is due meanwhile, and sleeps until a line changes or something is due; firings and
-    /// ends of periods are passed over.
+    /// Returns the next reading. Meanwhile it fires sensors that are due, and sleeps until a line changes or something
+    /// is due; it skips events of firings and ends of periods.
     ///
-    /// An edge is as old as the executor took to wake this task; one that came while other tasks ran is as uncertain as
-    /// they took, and beyond half a millisecond its reading is [`Late`](eeruf_core::ReadingKind::Late). May be dropped
-    /// at any await, such as by a `select`.
+    /// An edge is stamped late by the time that the executor takes to wake this task. If other tasks ran meanwhile, its
+    /// time is uncertain by their duration; beyond half a millisecond its reading is
+    /// [`Late`](eeruf_core::ReadingKind::Late). May be dropped at any await, such as by a `select`.
     pub async fn next(&mut self) -> Reading {
         loop {
             self.look();
@@ -76,7 +76,7 @@ where
         (self.edges.clock)()
     }
 
-    /// Takes in what has changed since the lines were last looked at.
+    /// Processes all changes since the lines were last looked at.
     fn look(&mut self) {
         let earliest = self.edges.looked;
         self.edges.looked = self.clock();
@@ -86,7 +86,7 @@ where
         }
     }
 
-    /// Takes in a line that changed between two instants, if it did.
+    /// Processes a line's change between two instants, if it changed.
     fn see(&mut self, sensor: u8, earliest: Instant, latest: Instant) {
         let Some(high) = self.lines.level(sensor) else { return };
         let bit = 1 << sensor;

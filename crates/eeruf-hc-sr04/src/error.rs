@@ -1,10 +1,10 @@
-//! [`SetupError`]: why a ring of sensors cannot be set up as asked.
+//! [`SetupError`]: reasons why a ring of sensors cannot be set up.
 
 use core::fmt;
 
 use eeruf_core::{Micros, RingError};
 
-/// Reason why a ring of sensors cannot be set up as asked.
+/// Reason why a ring of sensors cannot be set up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum SetupError {
@@ -15,7 +15,7 @@ pub enum SetupError {
         /// The time that a sensor needs.
         min_retrigger: Micros,
     },
-    /// The ring itself.
+    /// The error of the ring itself.
     Ring(RingError),
 }
 

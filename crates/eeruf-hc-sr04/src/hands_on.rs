@@ -1,7 +1,7 @@
-//! `hands_on!`: calls that every driver hands on to its ring.
+//! `hands_on!`: methods that every driver forwards to its ring.
 
-/// Implements them for a driver whose first parameter is its ring and whose last is the number of sensors, but for
-/// where its edges come from.
+/// Implements these methods for a driver whose first parameter is its ring and whose last is the number of sensors,
+/// unless they depend on the source of its edges.
 macro_rules! hands_on {
     ($driver:ident, $($parameter:ident),+ $(; $edges:ident)?) => {
         impl<P, J, $($parameter,)+ const K: usize, const H: usize $(, $edges)?>

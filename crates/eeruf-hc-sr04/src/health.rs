@@ -1,4 +1,4 @@
-//! [`Health`]: what the line or the answers of a sensor say about the sensor.
+//! [`Health`]: the health of a sensor, judging by its line or its answers.
 
 use core::fmt;
 
@@ -6,7 +6,7 @@ use core::fmt;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum Health {
-    /// The line answers, or it has not been asked often enough to know.
+    /// The line answers, or it has been triggered too seldom to know.
     #[default]
     Well,
     /// No answer to triggers: no sensor there, a cut wire, or no interrupts at all.
@@ -15,8 +15,8 @@ pub enum Health {
     StuckHigh,
     /// Several pulses or answers followed one trigger, or an invalid one.
     Chatters,
-    /// The line fell without having risen, or rose and was low again without having fallen: edges get lost on the way;
-    /// or a part of its answer did.
+    /// An edge or a part of its answer got lost: the line fell without having risen, or rose and was low again without
+    /// having fallen.
     LosesEdges,
     /// One of its pins, its bus or its serial line reported an error.
     PinError,

@@ -2,7 +2,7 @@
 //!
 //! The echo line of an HC-SR04 rises about half a millisecond after the trigger and falls when the echo is in; the echo
 //! time is the width of that pulse. Without an echo the line falls after the sensor's own time-out, 38 ms or more. The
-//! driver turns pulses into echoes for [`Ring`](eeruf_core::Ring), and keeps out what real wiring adds:
+//! driver turns pulses into echoes for [`Ring`](eeruf_core::Ring), and handles the faults of real wiring:
 //!
 //! - edges within 100 us of the trigger, which are the trigger itself seen through the cable;
 //! - pulses too short for an echo, and further pulses of a line that chatters;
@@ -18,7 +18,7 @@
 //! With feature `async` a ring is a task: `ring.next().await` waits for lines and deadlines by `embedded-hal-async`,
 //! and the next reading is its value (`HcSr04Ring::awaited`).
 //!
-//! A loop that looks at lines instead of taking interrupts hands in edges as intervals: see [`Sampler`].
+//! A loop that samples lines instead of using interrupts reports edges as intervals: see [`Sampler`].
 //!
 //! Where hardware triggers the modules and times their lines, such as PIO, RMT or a timer, see [`capture`]. Modules
 //! that measure by themselves and report a value, over I2C, a serial line or by a pulse, are in [`measuring`].

@@ -1,16 +1,16 @@
-//! [`Line`]: from the edges of one echo line to the width of a pulse, and to the health of the sensor.
+//! [`Line`]: turns the edges of one echo line into the width of a pulse and the health of the sensor.
 
 use eeruf_core::{Edge, Instant, Micros};
 
 use crate::health::Health;
 use crate::settings::Settings;
 
-/// Where a sensor is between trigger and echo.
+/// The state of a sensor between trigger and echo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Pulse {
-    /// Nothing is expected: before the first trigger, and after one that could not be given.
+    /// No pulse is expected: before the first trigger, and after one that could not be given.
     Idle,
-    /// Triggered; the line has not risen.
+    /// The sensor was triggered, and the line has not risen.
     Awaited,
     /// The line rose at this instant.
     Rose(Instant),
@@ -18,26 +18,26 @@ pub(crate) enum Pulse {
     Over(Instant, u16),
 }
 
-/// The width of a pulse that does not go on after a gap: one that hardware measured, or a longer one.
+/// The width of a pulse that no edge continues after a gap: hardware measured it, or it is too long.
 const ENDED: u16 = u16::MAX;
 
 /// The meaning of an edge for a firing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Shown {
-    /// Nothing that is not known.
+    /// Nothing new.
     Nothing,
-    /// The line rose: the sensor listens.
+    /// The line rose, so the sensor listens.
     Answer,
-    /// The line rose, and the end of a pulse that began before this firing got lost: what counted as silence may have
-    /// been an echo.
+    /// The line rose, and the end of a pulse that began before this firing got lost: that silence may have been an
+    /// echo.
     AnswerAfterLoss,
-    /// The pulse was too short for an echo: it does not after all.
+    /// The pulse was too short for an echo: the line's rise was no answer.
     Disturbance,
-    /// The pulse ended, as long as the sensor's own time-out: it listened and heard nothing.
+    /// The pulse ended with the sensor's own time-out: the sensor listened and heard nothing.
     Silence,
-    /// The pulse goes on after a short gap: what looked like its end was a disturbance.
+    /// The pulse continues after a short gap: its apparent end was a disturbance.
     GoesOn,
-    /// The echo is in, this long after the sound was sent at the least, and up to so much later.
+    /// The echo arrived at least this long after the sound was sent, and at most this much later.
     Echo(Micros, Micros),
 }
 
@@ -45,11 +45,11 @@ pub(crate) enum Shown {
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Line {
     pub(crate) pulse: Pulse,
-    /// The line was seen to be high when the sensor was to be triggered again, so that it was not.
+    /// True if the line was high when the sensor was to be triggered again, so that it was not triggered.
     pub(crate) is_held: bool,
-    /// The line rose up to this many microseconds before it was seen to.
+    /// Greatest delay, in microseconds, between the rise of the line and its detection.
     rose_before: u16,
-    /// Firings in a row without a pulse.
+    /// Number of consecutive firings without a pulse.
     silent: u8,
     /// The flaw of this firing: more than one pulse or one too short, or an edge without its counterpart.
     flaw: Health,
@@ -57,7 +57,7 @@ pub(crate) struct Line {
 }
 
 impl Line {
-    /// Before the first trigger.
+    /// A line before the first trigger.
     pub(crate) const NEW: Self = Self {
         pulse: Pulse::Idle,
         is_held: false,
@@ -137,7 +137,7 @@ impl Line {
         self.rose_before = u16::try_from(before.as_micros()).unwrap_or(u16::MAX);
     }
 
-    /// Returns the meaning of a pulse that hardware has measured.
+    /// Returns the meaning of a pulse measured by hardware.
     pub(crate) fn pulse(&mut self, width: Micros, settings: &Settings) -> Shown {
         if self.pulse == Pulse::Idle {
             return Shown::Nothing;
@@ -151,13 +151,13 @@ impl Line {
         if width < settings.longest { Shown::Echo(width, Micros::ZERO) } else { Shown::Silence }
     }
 
-    /// Returns true if a line that is high rose after its trigger, no longer ago than a healthy sensor holds it.
+    /// Returns true if the line rose after its trigger and has been high no longer than a healthy sensor holds it.
     pub(crate) fn listens_still(&self, now: Instant, longest_hold: Micros) -> bool {
         matches!(self.pulse, Pulse::Rose(rose) if now.since(rose) <= longest_hold)
     }
 
-    /// Sets the health by the last firing, before the next trigger. Returns whether its line rose and never fell: an
-    /// edge got lost, and what counted as silence may have been an echo.
+    /// Sets the health by the last firing, before the next trigger. Returns true if its line rose and never fell: an
+    /// edge got lost, and the silence may have been an echo.
     pub(crate) fn end_firing(&mut self, missing_after: u8) -> bool {
         match self.pulse {
             Pulse::Awaited if self.flaw == Health::Well => {

@@ -1,4 +1,4 @@
-//! [`Lines`]: the pins of all sensors. It triggers them, and makes echoes of their edges.
+//! [`Lines`]: the pins of all sensors. It triggers them, and turns their edges into echoes.
 
 use eeruf_core::{Edge, Instant, Micros};
 use embedded_hal::delay::DelayNs;
@@ -14,12 +14,12 @@ use crate::settings::Settings;
 pub struct Pins<T, I> {
     /// The trigger.
     pub trigger: T,
-    /// The echo line. It is read only just before a trigger; its edges come in through
+    /// The echo line. It is read only just before a trigger; its edges are reported by
     /// [`HcSr04Ring::edge`](crate::HcSr04Ring::edge).
     pub echo: I,
 }
 
-/// An echo pin that can also drive its line, as pins do that change between input and output.
+/// An echo pin that can also drive its line, because it can change between input and output.
 pub trait FlexPin: InputPin {
     /// Drives the line low.
     ///
@@ -34,7 +34,7 @@ pub trait FlexPin: InputPin {
     fn release(&mut self) -> Result<(), Self::Error>;
 }
 
-/// The pins of `K` sensors, and what their lines show.
+/// The pins of `K` sensors, and the state of their lines.
 #[derive(Debug)]
 pub(crate) struct Lines<T, I, D, const K: usize> {
     pins: [Pins<T, I>; K],
@@ -59,13 +59,13 @@ impl<T, I, D, const K: usize> Lines<T, I, D, K> {
         line.map_or(Shown::Nothing, |line| line.edge(edge, before, fired, &self.settings))
     }
 
-    /// Returns the meaning of a pulse that hardware has measured.
+    /// Returns the meaning of a pulse measured by hardware.
     pub(crate) fn pulse(&mut self, sensor: u8, width: Micros) -> Shown {
         let line = self.lines.get_mut(usize::from(sensor));
         line.map_or(Shown::Nothing, |line| line.pulse(width, &self.settings))
     }
 
-    /// Takes in that hardware has triggered a sensor.
+    /// Notes that hardware has triggered a sensor.
     pub(crate) fn triggered(&mut self, sensor: u8, now: Instant) -> Trigger {
         let given = Trigger::Given { lost_an_edge: false };
         let Some(line) = self.lines.get_mut(usize::from(sensor)) else { return given };
@@ -131,7 +131,7 @@ impl<T, I: InputPin + embedded_hal_async::digital::Wait, D, const K: usize> Line
         self.pins.get_mut(usize::from(sensor))?.echo.is_high().ok()
     }
 
-    /// Waits for so long, or until a line changes: which one.
+    /// Waits for a delay, or until a line changes; returns that line.
     pub(crate) async fn wait(&mut self, us: u32) -> Option<u8>
     where
         D: embedded_hal_async::delay::DelayNs,
@@ -151,7 +151,7 @@ impl<T, I: InputPin + embedded_hal_async::digital::Wait, D, const K: usize> Line
 }
 
 impl<T, I: FlexPin, D: DelayNs, const K: usize> Lines<T, I, D, K> {
-    /// Pulls the line of a sensor low whose trigger was withheld since it is stuck. Returns true if it was.
+    /// Pulls the line of a sensor low if its trigger was withheld because the line is stuck. Returns true if it did.
     pub(crate) fn recover(&mut self, sensor: u8) -> bool {
         let x = usize::from(sensor);
         let (Some(line), Some(pins)) = (self.lines.get_mut(x), self.pins.get_mut(x)) else { return false };
@@ -173,11 +173,11 @@ impl<T, I: FlexPin, D: DelayNs, const K: usize> Lines<T, I, D, K> {
 pub(crate) enum Trigger {
     /// The trigger was given.
     Given {
-        /// True if the pulse of the firing before began and never ended: that silence may have been an echo.
+        /// True if the pulse of the firing before began and never ended: its silence may have been an echo.
         lost_an_edge: bool,
     },
     /// The trigger was withheld: the line is stuck, or cannot be read.
     Withheld,
-    /// Nor was it, but the sensor has heard nothing of an earlier one yet and holds its line.
+    /// The trigger was withheld: the sensor has heard nothing of an earlier firing yet and holds its line.
     ListensStill,
 }

@@ -1,4 +1,4 @@
-//! [`HcSr04Ring`]: the driver of a ring. It triggers the sensors that the ring fires, and hands it the echoes.
+//! [`HcSr04Ring`]: the driver of a ring. It triggers the sensors that the ring fires, and reports their echoes to it.
 
 use eeruf_core::{
     EchoFilter, Edge, EdgeQueue, Instant, Micros, Ring, RingError, RingEvent, SensorError, Silence, VerifiedSchedule,
@@ -24,10 +24,10 @@ pub struct HcSr04Ring<R, T, I, D, const K: usize, Q = ()> {
     pub(crate) edges: Q,
 }
 
-/// The edges that a driver takes in before each poll: of a queue that interrupts fill, or `()` for none, where the
-/// caller hands them in by [`HcSr04Ring::edge`].
+/// The source of edges that a driver reads before each poll: a queue that interrupts fill, or `()` if the caller
+/// reports them by [`HcSr04Ring::edge`].
 pub trait Edges {
-    /// Takes out the oldest edge, if there is one.
+    /// Removes the oldest edge, if there is one.
     fn pop(&self) -> Option<Edge>;
 }
 
@@ -64,7 +64,7 @@ impl<P: Plan, J: Judge, T: OutputPin, I: InputPin, D: DelayNs, const K: usize, c
 impl<P: Plan, J: Judge, T: OutputPin, I: InputPin, D: DelayNs, const K: usize, const H: usize, Q: Edges>
     HcSr04Ring<Ring<P, J, K, 1, H>, T, I, D, K, Q>
 {
-    /// Like [`new`](HcSr04Ring::new), with the queue that the edge interrupt fills. Each poll takes its edges in first.
+    /// Like [`new`](HcSr04Ring::new), with the queue that the edge interrupt fills. Each poll reads its edges first.
     ///
     /// # Errors
     /// As there.
@@ -80,8 +80,8 @@ impl<P: Plan, J: Judge, T: OutputPin, I: InputPin, D: DelayNs, const K: usize, c
 
     /// Like [`Ring::poll`]. [`RingEvent::Fire`] is for information: the sensor has been triggered already.
     ///
-    /// Edges in the queue are taken in first. Read the clock for `now` just before: then no window closes on an edge
-    /// that came in time, however long the main loop was busy elsewhere.
+    /// The queue's edges are read first. Read the clock for `now` just before the call: then no window closes before a
+    /// punctual edge is read, however long the main loop was busy.
     ///
     /// A trigger takes [`Settings::trigger`], 10 us, during which the driver waits: setting an alarm would take as
     /// long.
@@ -106,9 +106,9 @@ impl<P: Plan, J: Judge, T: OutputPin, I: InputPin, D: DelayNs, const K: usize, c
 
 impl<R, T, I: FlexPin, D: DelayNs, const K: usize, Q> HcSr04Ring<R, T, I, D, K, Q> {
     /// Pulls the line of a sensor low for [`Settings::recovery`] if it is stuck high, and returns true if it was; call
-    /// it after each [`RingEvent::Fire`]. Some modules hold their line for ever after a lost echo, until it is pulled
-    /// low. The firing is [`Stuck`](eeruf_core::ReadingKind::Stuck) all the same; the next one triggers the module if
-    /// its line stays low.
+    /// it after each [`RingEvent::Fire`]. Some modules hold their line after a lost echo until it is pulled low. The
+    /// reading of this firing is still [`Stuck`](eeruf_core::ReadingKind::Stuck); the next firing triggers the module
+    /// if its line stays low.
     ///
     /// Module and pin drive against each other meanwhile: put a resistor of 1 kOhm into the line.
     pub fn recover(&mut self, sensor: u8) -> bool {
@@ -117,7 +117,7 @@ impl<R, T, I: FlexPin, D: DelayNs, const K: usize, Q> HcSr04Ring<R, T, I, D, K, 
 }
 
 impl<P: Plan, J: Judge, const K: usize, const H: usize> HcSr04Ring<Ring<P, J, K, 1, H>, (), (), (), K> {
-    /// Puts a ring on hardware that has the pins: a timer, PIO or RMT that triggers at the instants of
+    /// Makes a driver for hardware that owns the pins: a timer, PIO or RMT that triggers at the instants of
     /// [`upcoming`](Self::upcoming), for [`poll_triggered`](Self::poll_triggered), and stamps edges or measures pulses.
     ///
     /// # Errors
@@ -128,9 +128,9 @@ impl<P: Plan, J: Judge, const K: usize, const H: usize> HcSr04Ring<Ring<P, J, K,
 }
 
 impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize> HcSr04Ring<Ring<P, J, K, 1, H>, T, I, D, K> {
-    /// Like [`Ring::poll`] at the instant `at` at which hardware has triggered the sensor that was due, by
-    /// [`Ring::upcoming`]: it is not triggered again. Call until there is no event, after all edges up to `at` and
-    /// before all later ones. The line was not seen to be low: a sensor that still held it counts as unanswered.
+    /// Polls like [`Ring::poll`] at the instant `at` at which hardware triggered the sensor that was due, by
+    /// [`Ring::upcoming`], without triggering it again. Call it until there is no event, after all edges up to `at` and
+    /// before all later ones. The line was not checked to be low: a sensor that still held it counts as unanswered.
     pub fn poll_triggered(&mut self, at: Instant) -> Option<RingEvent> {
         let event = self.ring.poll(at)?;
         if let RingEvent::Fire { sensor, .. } = event {
@@ -165,8 +165,8 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize, Q> HcSr04Ring<R
         };
     }
 
-    /// Hands in the width of a sensor's pulse, from hardware that measures it: instead of edges, before the reading is
-    /// emitted (see [`Ring::set_report_after`]).
+    /// Reports the width of a sensor's pulse from hardware that measures it, instead of edges. Call it before the
+    /// reading is emitted (see [`Ring::set_report_after`]).
     ///
     /// # Errors
     /// [`SensorError`] if the sensor is out of range.
@@ -194,7 +194,7 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize, Q> HcSr04Ring<R
         self.ring.next_deadline()
     }
 
-    /// An edge on an echo line. Hand in all edges you have before you poll.
+    /// Reports an edge on an echo line. Report all edges you have before you poll.
     ///
     /// # Errors
     /// [`SensorError`] for a sensor out of range.
@@ -202,9 +202,9 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize, Q> HcSr04Ring<R
         self.edge_seen(edge, Micros::ZERO)
     }
 
-    /// Like [`edge`](Self::edge), of an edge that came between two instants: the line was last seen without it at
-    /// `earliest`, and with it at `latest`. For who samples lines: see [`Sampler`](crate::Sampler). A pulse is as long
-    /// as between its uncertain edges, and counts as [`Ring::echo_between`] has it.
+    /// Reports an edge like [`edge`](Self::edge) that came between two instants: the line was last seen without it at
+    /// `earliest`, and with it at `latest`. It is for loops that sample lines: see [`Sampler`](crate::Sampler). The
+    /// uncertainty of a pulse is that of both its edges, and is treated as by [`Ring::echo_between`].
     ///
     /// # Errors
     /// As for [`Ring::echo_between`].
@@ -236,7 +236,7 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize, Q> HcSr04Ring<R
         }
     }
 
-    /// Like [`Ring::fired`], where a sensor was triggered at another instant than the poll said.
+    /// Like [`Ring::fired`], for a sensor that was triggered at another instant than the poll said.
     ///
     /// # Errors
     /// [`SensorError`] for a sensor out of range.
@@ -244,8 +244,8 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize, Q> HcSr04Ring<R
         self.ring.fired(sensor, at)
     }
 
-    /// Health of a sensor at its last complete firing, as far as its line shows it; [`Health::Missing`] for one that
-    /// the ring does not have.
+    /// Health of a sensor at its last complete firing, as far as its line shows it. A sensor that the ring does not
+    /// have is [`Health::Missing`].
     pub fn health(&self, sensor: u8) -> Health {
         self.lines.health(sensor)
     }

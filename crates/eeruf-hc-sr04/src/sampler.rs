@@ -1,8 +1,8 @@
-//! [`Sampler`]: edges of lines that are looked at now and then.
+//! [`Sampler`]: edges of lines that a loop samples.
 
 use eeruf_core::Instant;
 
-/// The levels of `K` echo lines as a loop sees them that has no interrupts for their edges.
+/// The levels of `K` echo lines as seen by a loop without edge interrupts.
 ///
 /// ```
 /// use eeruf_core::Instant;
@@ -15,19 +15,19 @@ use eeruf_core::Instant;
 /// ```
 #[derive(Clone, Debug)]
 pub struct Sampler<const K: usize> {
-    /// Time when each line was last seen, and if it was high.
+    /// Time when each line was last sampled, and its level then.
     seen: [(Instant, bool); K],
 }
 
 impl<const K: usize> Sampler<K> {
-    /// Lines that are low, `now`.
+    /// A sampler of lines that are low `now`.
     pub const fn new(now: Instant) -> Self {
         Self { seen: [(now, false); K] }
     }
 
-    /// Takes in the level that a line had between two readings of the clock. Returns the instants between which it
-    /// changed, if it did: for [`HcSr04Ring::edge_between`](crate::HcSr04Ring::edge_between). Call it with each look,
-    /// at all lines before each poll.
+    /// Records the level that a line had between two readings of the clock. If it changed, returns the instants between
+    /// which it did, for [`HcSr04Ring::edge_between`](crate::HcSr04Ring::edge_between). Call it for all lines before
+    /// each poll.
     pub fn look(&mut self, sensor: u8, high: bool, before: Instant, after: Instant) -> Option<(Instant, Instant)> {
         let seen = self.seen.get_mut(usize::from(sensor))?;
         let (earliest, was_high) = core::mem::replace(seen, (before, high));

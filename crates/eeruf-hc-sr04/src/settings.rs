@@ -1,26 +1,26 @@
-//! [`Settings`]: the times that the sensors need.
+//! [`Settings`]: times and limits of the sensors.
 
 use eeruf_core::Micros;
 use eeruf_modules::{HC_SR04, Module};
 
 use crate::error::SetupError;
 
-/// Needs of the sensors.
+/// Times and limits of the sensors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct Settings {
     /// Width of the trigger's pulse.
     pub trigger: Micros,
-    /// Time after the trigger in which edges are the trigger itself, seen through the cable.
+    /// Time after the trigger in which edges are crosstalk of the trigger through the cable.
     pub deaf: Micros,
-    /// Shorter pulses are no echoes: 100 us is 17 mm, less than the sensor can measure.
+    /// Shortest pulse that is an echo: 100 us is 17 mm, less than the sensor can measure.
     pub shortest: Micros,
-    /// A line that rises later after the trigger was not raised by it: another sensor's, by exchanged wires.
+    /// Latest rise after the trigger: a line that rises later was raised by another sensor, whose wires are exchanged.
     pub latest_rise: Micros,
-    /// Pulses as long as this are the sensor's own time-out, which may be a nineteenth short: no echo.
+    /// Shortest pulse that is the sensor's own time-out, which may be a nineteenth short, and not an echo.
     pub longest: Micros,
-    /// The longest that a healthy sensor holds its line where nothing is in range; many clones do for 130 to 200 ms. A
-    /// line that rose after its trigger and is high for no longer is still listening, not stuck.
+    /// Longest time for which a healthy sensor holds its line if nothing is in range; many clones take 130 to 200 ms. A
+    /// line that rose after its trigger and has been high for less is not stuck.
     pub longest_hold: Micros,
     /// Least time between two triggers of a sensor.
     pub min_retrigger: Micros,

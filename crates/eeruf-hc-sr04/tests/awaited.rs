@@ -16,9 +16,9 @@ use embedded_hal_async::digital::Wait;
 /// Modules, each before a wall of its own, and the clock.
 struct World {
     now_us: u32,
-    /// The widths of pulses; none for a module that is missing.
+    /// The widths of pulses; `None` for a module that is missing.
     widths_us: Vec<Option<u32>>,
-    /// Edges to come: when, whose, its level.
+    /// Edges to come: time, sensor, level.
     coming: Vec<(u32, usize, bool)>,
     high: Vec<bool>,
     edges: Vec<u32>,
@@ -118,7 +118,7 @@ impl embedded_hal_async::delay::DelayNs for Delay {
     }
 }
 
-/// Runs a task until it is done, or until this time: none.
+/// Runs a task until it is done, or returns `None` at this time.
 fn run<F: Future>(world: &Rc<RefCell<World>>, until_us: u32, task: F) -> Option<F::Output> {
     let mut task = pin!(task);
     loop {
@@ -134,8 +134,8 @@ fn run<F: Future>(world: &Rc<RefCell<World>>, until_us: u32, task: F) -> Option<
 
 const WIDTHS_US: [Option<u32>; 4] = [Some(3_000), Some(9_000), None, Some(20_000)];
 
-/// The readings of four modules in 10 s, by kind and in all, and the greatest error of an echo; each `next` lasts
-/// `piece_us` at most.
+/// The readings of four modules in 10 s, by kind and in total, and the greatest error of an echo; each `next` lasts at
+/// most `piece_us`.
 fn ten_seconds(piece_us: u32) -> ([(Tally<u32>, u32); 4], u32) {
     let (widths_us, coming) = (WIDTHS_US.to_vec(), Vec::new());
     let world = World { now_us: 0, widths_us, coming, high: vec![false; 4], edges: vec![0; 4], alarm_us: None };

@@ -1,5 +1,5 @@
 //! Modules that a timer triggers while the loop is late, whose lines are stamped or whose pulses are measured by
-//! hardware, with results that come late, get lost, or come twice.
+//! hardware, with results that are late, lost or duplicated.
 
 use eeruf_core::{
     Edge, Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, ScheduledRing, SensorError, Tally,
@@ -14,7 +14,7 @@ type Driver = HcSr04Ring<ScheduledRing<'static, K>, (), (), (), K>;
 /// The answer of a module to a trigger.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Answer {
-    /// A pulse so long, in microseconds.
+    /// A pulse of this many microseconds.
     Pulse(u32),
     /// No edge at all.
     Cut,
@@ -26,7 +26,7 @@ enum Answer {
     Twice(u32),
 }
 
-/// Runs a loop that comes round every 0 to 5 ms, for some periods; `pulses`: hardware measures widths, instead of
+/// Runs several periods in a loop that comes round every 0 to 5 ms; with `pulses` hardware measures widths instead of
 /// stamping edges.
 fn run(pulses: bool, periods: u32, answer: impl Fn(u8, u32) -> Answer) -> ([Tally<u32>; K], [Health; K]) {
     let mut r = Rng::with_seed(20_000);

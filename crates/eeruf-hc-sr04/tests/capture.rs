@@ -1,5 +1,5 @@
-//! Rings on peripherals that trigger and capture: a PIO whose program is run by the cycle, the receiver of an RMT, the
-//! capture registers of a timer. The loop comes late, and results come late, get lost, or come twice.
+//! Rings on peripherals that trigger and capture: a PIO simulated cycle by cycle, the receiver of an RMT, the capture
+//! registers of a timer. The loop is late, and results are late, lost or duplicated.
 
 #[path = "shared/pio.rs"]
 mod pio;
@@ -23,7 +23,7 @@ fn us(us: u32) -> Micros {
 /// The space before a module, or a fault of its line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Answer {
-    /// A pulse so long, in microseconds.
+    /// A pulse of this many microseconds.
     Pulse(u32),
     /// A pulse with a gap of 5 us after 2 ms.
     Gap(u32),
@@ -36,7 +36,7 @@ enum Answer {
 }
 
 impl Answer {
-    /// Edges of the line, in microseconds after the trigger, by turns up and down.
+    /// Edges of the line, in microseconds after the trigger, alternately rising and falling.
     fn edges(self, jitter: u32) -> Vec<u32> {
         match self {
             Self::Pulse(width) => vec![450, 450 + width + jitter],
@@ -48,7 +48,7 @@ impl Answer {
     }
 }
 
-/// A fault of what a peripheral reports.
+/// A fault in a peripheral's reports.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Trouble {
     None,
@@ -62,7 +62,7 @@ enum Trouble {
     Stale,
 }
 
-/// Takes out the first if it may come.
+/// Removes the first element if it passes the test.
 fn next_if<T>(queue: &mut VecDeque<T>, may_come: impl Fn(&T) -> bool) -> Option<T> {
     if may_come(queue.front()?) { queue.pop_front() } else { None }
 }
@@ -71,7 +71,7 @@ fn next_if<T>(queue: &mut VecDeque<T>, may_come: impl Fn(&T) -> bool) -> Option<
 struct Modules {
     answer: fn(u8) -> (Answer, Trouble),
     random: Rng,
-    /// Edges of each line by when they come, of which the first rises where `high` is false.
+    /// Edges of each line by time; the first rises if `high` is false.
     edges: [VecDeque<Instant>; K],
     high: [bool; K],
     reports: u32,
@@ -83,7 +83,7 @@ impl Modules {
         Self { answer, random, edges: std::array::from_fn(|_| VecDeque::new()), high: [false; K], reports: 0 }
     }
 
-    /// A module is triggered; one that holds its line hears nothing.
+    /// Triggers a module; one that holds its line ignores it.
     fn trigger(&mut self, sensor: u8, at: Instant) {
         let x = usize::from(sensor);
         if self.high[x] || !self.edges[x].is_empty() {
@@ -93,7 +93,7 @@ impl Modules {
         self.edges[x].extend((self.answer)(sensor).0.edges(jitter).into_iter().map(|after| at + us(after)));
     }
 
-    /// The next edge of a line that has happened by now.
+    /// The next edge of a line up to now.
     fn edge(&mut self, sensor: u8, now: Instant) -> Option<LineEdge> {
         let x = usize::from(sensor);
         let at = next_if(&mut self.edges[x], |at| now.has_reached(*at))?;
@@ -105,7 +105,7 @@ impl Modules {
         (self.answer)(sensor).1
     }
 
-    /// Number of times that the next report comes.
+    /// Number of copies of the next report.
     fn copies(&mut self, sensor: u8) -> usize {
         self.reports += 1;
         match self.trouble(sensor) {
@@ -131,7 +131,7 @@ struct Pio {
     machines: [StateMachine; K],
     lines: [PioLine; K],
     words: [VecDeque<u32>; K],
-    /// The difference of each trigger from the instant that it was to come at, at most.
+    /// Greatest difference of a trigger from its requested instant.
     off: u32,
     awaited: [Instant; K],
 }
@@ -194,12 +194,12 @@ struct Rmt {
     fired: [Instant; K],
     /// The edges of a reception.
     edges: [Vec<LineEdge>; K],
-    /// Symbols, of which firing, and when they are there.
+    /// Symbols with their firing, and the time when they are available.
     received: [VecDeque<(Instant, Instant, Vec<u32>)>; K],
     is_on: [bool; K],
 }
 
-/// Above the longest echo and below the 38 ms of a healthy module.
+/// Idle threshold above the longest echo and below the 38 ms of a healthy module.
 const IDLE: u32 = 37_000;
 
 impl Rmt {
@@ -275,7 +275,7 @@ impl Captures for Rmt {
 struct Timer {
     modules: Modules,
     lines: [TimerLine; K],
-    /// Registers that are read late, and since when.
+    /// Registers that are read late, and the time since when.
     kept: [(Captured, Option<Instant>); K],
     fires: [Option<Instant>; K],
     /// All firings.
@@ -351,7 +351,7 @@ fn driver<C: Captures>(hardware: C) -> Driver<C> {
     CaptureRing::new(ring, Settings::default(), hardware).unwrap()
 }
 
-/// Runs a loop that comes round every 0 to 5 ms, for some periods.
+/// Runs several periods in a loop that comes round every 0 to 5 ms.
 fn run<C: Captures>(hardware: C, periods: u32) -> ([Tally<u32>; K], [Health; K], C, u32) {
     let (mut driver, mut random, mut now) = (driver(hardware), Rng::with_seed(20_000), BEGIN);
     let (mut tallies, mut ended, mut late) = ([Tally::default(); K], 0, 0);
@@ -380,7 +380,7 @@ fn wall(sensor: u8) -> u32 {
     3_000 + 2_000 * u32::from(sensor)
 }
 
-/// A line of a single module: a state machine that is triggered once, and listens for 45 ms.
+/// The edges of a single module whose state machine is triggered once and listens for 45 ms.
 fn pio_edges(answer: fn(u8) -> (Answer, Trouble)) -> (Vec<(bool, u32)>, Pio) {
     let mut pio = Pio::new(Modules::new(answer));
     let fired = pio.fire(0, BEGIN + us(1_000), BEGIN).unwrap();
@@ -558,7 +558,7 @@ fn reports_later_than_the_next_firing_are_refused() {
     assert!(matches!(CaptureRing::new(ring, Settings::default(), Slow), Err(SetupError::Ring(_))));
 }
 
-/// Runs all three peripherals.
+/// Runs a test on all three peripherals.
 fn each(answer: fn(u8) -> (Answer, Trouble), periods: u32, check: impl Fn(&str, [Tally<u32>; K], [Health; K])) {
     let (tallies, health, pio, late) = run(Pio::new(Modules::new(answer)), periods);
     assert_eq!((late, pio.off <= 1), (0, true), "a PIO fires when the table says: {} us off", pio.off);

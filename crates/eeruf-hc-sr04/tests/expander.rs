@@ -1,4 +1,4 @@
-//! Four modules in two pairs that share a trigger line each, behind a port expander: pins that take time and can fail.
+//! Four modules in two pairs, each with a shared trigger line behind a port expander: pins that are slow and can fail.
 
 use core::cell::{Cell, RefCell};
 
@@ -27,7 +27,7 @@ const TRANSFER_US: u32 = 190;
 const RISES_AFTER_US: u32 = 450;
 const WALLS_US: [u32; 4] = [3_000, 9_000, 15_000, 21_000];
 
-/// The clock, the two trigger lines behind the expander, and when each module's pulse began and ends.
+/// The clock, the two trigger lines behind the expander, and the start and end of each module's pulse.
 #[derive(Default)]
 struct World {
     now_us: Cell<u32>,
@@ -38,7 +38,7 @@ struct World {
 }
 
 impl World {
-    /// A byte for the expander's outputs. Modules on a line that falls begin, unless they are measuring.
+    /// Writes the expander's outputs. The modules of a line that falls begin, unless they are measuring.
     fn write(&self, outputs: u8) -> Result<(), Failed> {
         self.now_us.set(self.now_us.get() + TRANSFER_US);
         if self.fails.get() {
@@ -127,7 +127,7 @@ fn driver(world: &World) -> Driver<'_> {
     HcSr04Ring::new(ring, pins, Delay(world), Settings::default()).unwrap()
 }
 
-/// The kinds of this many readings of each module, and how far echo times are off at most.
+/// The kinds of this many readings of each module, and the greatest error of an echo time.
 fn readings(driver: &mut Driver<'_>, world: &World, count: usize) -> ([Vec<ReadingKind>; 4], u32) {
     let (mut kinds, mut off) = ([vec![], vec![], vec![], vec![]], 0);
     while kinds.iter().any(|of| of.len() < count) {

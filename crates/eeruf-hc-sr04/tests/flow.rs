@@ -1,5 +1,5 @@
-//! A ring by flow behind real wiring, as a busy main loop has it: pulses are echoes, polls come late, the robot moves,
-//! and a fault costs only the sensor that has it.
+//! A flow ring with realistic wiring and a busy main loop: pulses are echoes, polls are late, the robot moves, and a
+//! fault affects only its own sensor.
 
 use std::convert::Infallible;
 
@@ -40,7 +40,7 @@ impl InputPin for Line {
 
 type Driver<const K: usize> = HcSr04Ring<FlowRing<K>, Line, Line, NoopDelay, K>;
 
-/// Modules that rest for as long as theirs, on lines of which one may be stuck high.
+/// A driver of modules that rest for their usual time, on lines of which one may be stuck high.
 fn driver<const K: usize>(seed: u32, high: Option<usize>, settings: Settings) -> Result<Driver<K>, SetupError> {
     let turns = TurnSettings::new(seed);
     let ring =
@@ -49,8 +49,8 @@ fn driver<const K: usize>(seed: u32, high: Option<usize>, settings: Settings) ->
     HcSr04Ring::new(ring.unwrap(), pins, NoopDelay, settings)
 }
 
-/// Readings by kind of each sensor in 20 s. Each has a wall of its own, to which the robot drives at a speed of which
-/// the driver is `told`; each wake-up is late by up to `late_us`.
+/// Readings by kind of each sensor in 20 s. The robot drives towards a wall for each sensor, at a speed that the driver
+/// knows if `told`; each wake-up is late by up to `late_us`.
 fn walls<const K: usize>(
     mut driver: Driver<K>,
     late_us: u32,
@@ -97,7 +97,7 @@ fn walls<const K: usize>(
     }
 }
 
-/// Shares of readings accepted: of all, and of the sensor with the least.
+/// Shares of accepted readings: of all sensors, and of the worst sensor.
 fn accepted<const K: usize>(tallies: &[Tally<u32>; K]) -> (f64, f64) {
     let of = |tally: &Tally<u32>| {
         (tally.of(ReadingKind::Accepted), ReadingKind::ALL.map(|kind| tally.of(kind)).iter().sum())

@@ -1,5 +1,5 @@
-//! Lines that stay high: one that sticks is never free space, and one measurement counts once, however long a module
-//! that hears nothing holds its line.
+//! Lines that stay high: a stuck line is never free space, and a measurement counts once, however long a module that
+//! hears nothing holds its line.
 
 #[path = "shared/pins.rs"]
 mod pins;
@@ -40,7 +40,7 @@ impl pins::Lines for Lines {
     }
 }
 
-/// A reading of the watched sensor: when it was emitted, its kind, and the state after it.
+/// A reading of the watched sensor: time of emission, kind, and the state after it.
 type Said = (Instant, ReadingKind, SensorState);
 
 /// Runs a ring for 4 s. The watched sensor's pulses take `pulse_us`; its line sticks high at an instant, if at all.
@@ -94,7 +94,7 @@ fn run<P: Plan, J: Judge, const H: usize>(
     said
 }
 
-/// The rings: by a table, and by flow of a robot that stands and one that moves.
+/// The rings: one with a table, and flow rings of a robot that stands and of one that moves.
 fn each(pulse_us: u32, sticks: Option<Instant>, seed: u32) -> [(&'static str, Vec<Said>); 3] {
     let table = || Ring::new(&PAPER_12, RingConfig::new().with_window(Micros::from_millis(40)), BEGIN).unwrap();
     let flow = || {

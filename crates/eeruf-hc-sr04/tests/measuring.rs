@@ -1,5 +1,5 @@
 //! Rings of four modules that measure by themselves, in simulated time: an SRF08 on I2C, a US-100 on a serial line, an
-//! MB1010 by pulse width. Each fake behaves as its data sheet says, and has faults.
+//! MB1010 by pulse width. Each fake follows its data sheet, and has faults.
 
 #[path = "shared/four.rs"]
 mod four;
@@ -30,19 +30,19 @@ enum Trouble {
     None,
     /// A cut wire: no acknowledgement, no byte, no pulse.
     Cut,
-    /// The bus reports an error, and works when it is asked again.
+    /// A bus error that disappears when the module is asked again.
     Blip,
     /// The bus, the line or the pin reports an error.
     Bus,
     /// A part of the answer is missing.
     Truncated,
-    /// The answer holds something that the module did not send.
+    /// The answer contains bytes that the module did not send.
     Garbled,
-    /// The result comes too late, on a line after the next start.
+    /// The result comes too late; on a serial line, after the next start.
     Late,
     /// The result comes twice.
     Twice,
-    /// The start is not heard: what an earlier firing left is all there is.
+    /// The start is not received: only remains of an earlier firing are there.
     Ignored,
     /// The data line is shorted to ground.
     Shorted,
@@ -54,7 +54,7 @@ impl Trouble {
         [Cut, Blip, Bus, Truncated, Garbled, Late, Twice, Ignored, Shorted]
     };
 
-    /// Returns true if the result of the firing can be had all the same.
+    /// Returns true if the result of the firing can still be obtained.
     fn is_harmless(self) -> bool {
         matches!(self, Self::None | Self::Blip | Self::Twice)
     }
@@ -69,12 +69,12 @@ struct World {
     random: Rng,
     script: Script,
     firings: [u32; K],
-    /// Pulses to hand in: when they end, of which sensor, and how wide.
+    /// Pulses to report: time of the end, sensor, and width.
     pulses: Vec<(u64, u8, u32)>,
 }
 
 impl World {
-    /// A sensor is started: its echo time with some jitter, and its trouble.
+    /// Starts a sensor; returns its echo time with some jitter, and its trouble.
     fn start(&mut self, sensor: u8) -> (Option<u32>, Trouble) {
         let firing = &mut self.firings[usize::from(sensor)];
         let (space, trouble) = (self.script)(sensor, *firing);
@@ -264,7 +264,7 @@ impl embedded_hal::digital::OutputPin for RxFake {
     }
 }
 
-/// A module of the test, which a captured pulse may be for.
+/// A module under test, which may accept a captured pulse.
 trait Fake: Measures {
     fn of(world: &Shared, sensor: u8) -> Self;
 
@@ -299,7 +299,7 @@ fn instant(us: u64) -> Instant {
     Instant::from_micros(us as u32)
 }
 
-/// Runs a loop that comes round up to `late` microseconds late: each sensor's readings, and its health.
+/// Runs a loop that is up to `late` microseconds late; returns each sensor's readings and its health.
 fn run<M: Fake>(periods: u32, script: &Script, late: u32) -> ([Vec<Reading>; K], [Health; K]) {
     let world = World {
         now: BEGIN.as_micros().into(),
@@ -340,8 +340,8 @@ fn run<M: Fake>(periods: u32, script: &Script, late: u32) -> ([Vec<Reading>; K],
     (readings, std::array::from_fn(|x| ring.health(x as u8)))
 }
 
-/// Holds the readings of each sensor against the script: nothing is accepted but the wall, nothing is clear but what
-/// was reported, and at least 98 % of what two good firings in a row show is accepted or clear.
+/// Checks each sensor's readings against the script: only the wall is accepted, only reported free space is clear, and
+/// at least 98 % of the results of two good firings in a row are accepted or clear.
 fn check(readings: &[Vec<Reading>; K], script: &Script) {
     for (sensor, readings) in readings.iter().enumerate() {
         let (mut right, mut all) = (0, 0);
@@ -376,7 +376,7 @@ fn no_trouble(sensor: u8, _: u32) -> (Space, Trouble) {
     (space[usize::from(sensor)], Trouble::None)
 }
 
-/// Two sensors with a trouble of each kind in turn, one whose wire is cut later, and one without.
+/// Two sensors with each kind of trouble in turn, one whose wire is cut later, and one without trouble.
 fn troubles(sensor: u8, firing: u32) -> (Space, Trouble) {
     let now_and_then = |every: u32| match firing % every {
         4 => Trouble::ALL[(firing / every) as usize % Trouble::ALL.len()],

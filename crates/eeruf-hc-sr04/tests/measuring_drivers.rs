@@ -27,7 +27,7 @@ fn read(bytes: [u8; 4]) -> Transaction {
     Transaction::write_read(0x70, vec![0], bytes.to_vec())
 }
 
-/// The result of an SRF08 that was started and is asked at these times, with these transactions.
+/// The result of an SRF08 that is started and asked at these times, with these transactions.
 fn srf08(transactions: &[Transaction], asks: &[Micros]) -> Result<Measured, Fault> {
     let start = [Transaction::write(0x70, vec![0, 0x52])];
     let bus = Bus::new(start.iter().chain(transactions));
@@ -64,7 +64,7 @@ fn srf08_reports_echo_nothing_and_faults() {
 
 type Received = Result<u8, embedded_io::ErrorKind>;
 
-/// A serial line, and the bytes and errors that have come.
+/// A serial line, and the bytes and errors that have arrived.
 #[derive(Clone, Default)]
 struct Line(Rc<RefCell<VecDeque<Received>>>);
 
@@ -106,7 +106,7 @@ impl embedded_io::Write for Line {
     }
 }
 
-/// The result of a US-100 that answers by these distances, each in one piece, seen at these times.
+/// The result of a US-100 that sends these distances, each in one piece, read at these times.
 fn us100(answers: &[(Micros, u16)]) -> Result<Measured, Fault> {
     let line = Line::default();
     let mut module = Us100::new(line.clone());
@@ -185,7 +185,7 @@ fn mb1010_reports_echo_nothing_and_faults() {
     }
 }
 
-/// A module of a caller's own with the same answer each time, after 20 ms.
+/// A custom module that gives the same answer each time, after 20 ms.
 #[derive(Debug)]
 struct Scripted {
     module: Module,
@@ -218,7 +218,7 @@ impl Measures for Scripted {
 
 type ScriptedRing<M> = MeasuringRing<ScheduledRing<'static, K>, M, K>;
 
-/// Polls at each deadline: the kinds of reading of each sensor.
+/// Polls at each deadline; returns the kinds of reading of each sensor.
 fn poll_all<M: Measures>(ring: &mut ScriptedRing<M>) -> [Vec<ReadingKind>; K] {
     let mut kinds = std::array::from_fn(|_| vec![]);
     for _ in 0..3_000 {
@@ -288,7 +288,7 @@ fn table_too_fast_for_a_module_is_refused() {
     assert_eq!(refused(Module { report_us: 99_000, ..SRF08 }), Some(ms(99)));
 }
 
-/// Starts a ring whose modules never answer, until the last sensor fires: the ring, and when that was.
+/// Runs a ring whose modules never answer until the last sensor fires; returns the ring and the time.
 fn after_the_last_fires() -> (ScriptedRing<Scripted>, Instant) {
     let modules = std::array::from_fn(|_| Scripted::new(Err(Fault::NoAnswer)));
     let (mut ring, mut now) = (MeasuringRing::new(ring(), modules).unwrap(), BEGIN);
@@ -298,7 +298,7 @@ fn after_the_last_fires() -> (ScriptedRing<Scripted>, Instant) {
     (ring, now)
 }
 
-/// Polls every millisecond: the number of times that the last sensor's module was asked.
+/// Polls every millisecond; returns the number of times that the last sensor's module was asked.
 fn asked(ring: &mut ScriptedRing<Scripted>, from: Instant, polls: u32) -> u32 {
     for at in 0..polls {
         while ring.poll(from + ms(at)).is_some() {}

@@ -1,4 +1,4 @@
-//! The price of what a ring no longer believes: healthy modules, in rooms where they hear each other and in the open.
+//! The cost of rejected readings for healthy modules, in rooms where they hear each other and in the open.
 
 mod shared {
     pub(crate) mod pins;
@@ -41,8 +41,8 @@ impl Lines for High {
     fn trigger(&mut self, _sensor: u8) {}
 }
 
-/// Numbers of firings at a wall, and of others, and how many were told right; and after how many firings
-/// the last sensor was first clear.
+/// Numbers of firings with and without a wall, and of those judged correctly; and the number of firings after which the
+/// last sensor was first clear.
 #[derive(Default)]
 struct Seen {
     walls: [u32; 2],
@@ -50,8 +50,8 @@ struct Seen {
     first_clear: u32,
 }
 
-/// Ten seconds of a ring in a room: each sensor has a wall in three of five, and hears one of five others. In the open
-/// there is nothing. A pulse ends with the first sound, or after `holds`.
+/// Runs a ring in a room for ten seconds: three of five sensors have a wall, and each hears one of five others. In the
+/// open there is nothing. A pulse ends with the first sound, or after `holds`.
 fn room<P: Plan, J: Judge, const H: usize>(
     ring: Ring<P, J, K, 1, H>,
     seed: u64,
@@ -126,7 +126,7 @@ fn room<P: Plan, J: Judge, const H: usize>(
     seen.first_clear = clears.fold(seen.first_clear, u32::max);
 }
 
-/// Shares of firings in percent that are told right, before a wall and before none, and the latest first `clear`.
+/// Percentages of firings that are judged correctly, with and without a wall, and the latest first `clear`.
 fn shares(rooms: u64, is_open: bool, holds: u64, flow: bool) -> [f64; 3] {
     let mut seen = Seen::default();
     let (begin, config) = (Instant::from_micros(0), RingConfig::new().with_window(WINDOW));

@@ -1,4 +1,4 @@
-//! A module that holds its line for ever after a lost echo, as some clones do, until it is pulled low.
+//! A module that holds its line after a lost echo until it is pulled low, as some clones do.
 
 #[path = "shared/pins.rs"]
 mod pins;
@@ -18,7 +18,7 @@ use pins::Pin;
 const K: usize = 12;
 const LATCHED: u8 = 3;
 
-/// The lines, and what the driver did to them since the last look.
+/// The lines, and the driver's actions on them since the last look.
 #[derive(Default)]
 struct Lines {
     high: [bool; K],
@@ -26,7 +26,7 @@ struct Lines {
     is_driven: bool,
     /// Number of times that a line was pulled low.
     pulled: u32,
-    /// The line stays high all the same.
+    /// True if the line stays high even when pulled low.
     is_shorted: bool,
 }
 
@@ -55,11 +55,11 @@ impl FlexPin for Pin<Lines> {
     }
 }
 
-/// The outcome of a run: kinds of the latched sensor's readings, its states after them, its health, and the number of
+/// The result of a run: kinds of the latched sensor's readings, its states after them, its health, and the number of
 /// times that its line was pulled low.
 type Outcome = (Vec<ReadingKind>, Vec<SensorState>, Health, u32);
 
-/// Runs a ring of modules before walls, one of which hears nothing in its firings up to this one.
+/// Runs a ring of modules with walls; one of them hears nothing up to this firing.
 fn run(deaf_until: u32, recovers: bool, is_shorted: bool) -> Outcome {
     let lines = Rc::new(RefCell::new(Lines { is_shorted, ..Lines::default() }));
     let begin = Instant::from_micros(u32::MAX - 700_000);

@@ -1,4 +1,4 @@
-//! Real wiring against the driver: every fault costs only the sensor that has it, and is named.
+//! The driver against faults of real wiring: each fault affects only its own sensor, and is named.
 
 use eeruf_core::{
     Edge, EdgeQueue, Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, Schedule, ScheduledRing, Tally,
@@ -24,7 +24,7 @@ fn echo(us: u32) -> impl Fn(u32) -> Vec<(u32, bool)> {
     move |_| vec![(450, true), (450 + us, false)]
 }
 
-/// Runs some periods; `high` says whether the line of sensor 1 is high when it is to be triggered.
+/// Runs several periods; `high` says if the line of sensor 1 is high when it is to be triggered.
 fn run(periods: u32, high: bool, lines: [Line<'_>; K]) -> ([Tally<u32>; K], [Health; K]) {
     let schedule = schedule(100);
     let pulses =
@@ -76,7 +76,7 @@ fn run(periods: u32, high: bool, lines: [Line<'_>; K]) -> ([Tally<u32>; K], [Hea
     (tallies, health)
 }
 
-/// The others read as if nothing were wrong.
+/// Checks that the other sensors read as without a fault.
 fn others_are_well(tallies: &[Tally<u32>; K], health: &[Health; K]) {
     for x in [0, 2] {
         assert_eq!(

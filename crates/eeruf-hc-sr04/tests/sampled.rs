@@ -1,5 +1,5 @@
-//! A loop that looks at its lines and has other work: an edge is known to have come between two looks, and a distance
-//! that is wrong by what was overslept is not accepted.
+//! A loop that samples its lines and has other work: an edge is known to lie between two looks, and a distance that is
+//! wrong because of late looks is not accepted.
 
 #[path = "shared/pins.rs"]
 mod pins;
@@ -16,7 +16,7 @@ use pins::{Lines as _, Pin};
 
 const K: usize = 8;
 
-/// A turn of the loop, and how long it takes to look at one line.
+/// Time for a turn of the loop, and for a look at one line.
 const TURN_US: u32 = 100;
 const LOOK_US: u32 = 8;
 
@@ -50,8 +50,8 @@ fn driver(lines: &Rc<RefCell<Lines>>, now: Instant) -> HcSr04Ring<FlowRing<K>, P
     HcSr04Ring::new(ring, pins, NoopDelay, Settings::default()).unwrap()
 }
 
-/// Runs for 20 s beside work of `work_us` in each `every_us`. `as_seen`: edges are handed in as if they had
-/// come when they were seen. Returns accepted readings that are right, and those that are wrong by 5 cm and more.
+/// Runs for 20 s with other work of `work_us` in each `every_us`. With `as_seen` edges are reported with the time of
+/// the look. Returns the numbers of accepted readings that are right, and that are wrong by 5 cm or more.
 fn run([work_us, every_us]: [u32; 2], as_seen: bool) -> (u32, u32) {
     let lines = Rc::new(RefCell::new(Lines::default()));
     let mut driver = driver(&lines, Instant::from_micros(0));

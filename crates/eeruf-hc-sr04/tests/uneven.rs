@@ -27,7 +27,7 @@ const RING: VerifiedSchedule<2, 2, EachSensor<2>> = schedule! {
     },
 };
 
-/// A pin that is low, and to which anything may be done.
+/// A pin that is low and accepts every call.
 struct Pin;
 
 impl embedded_hal::digital::ErrorType for Pin {
@@ -65,7 +65,7 @@ fn driver(min_retrigger_ms: u32) -> Result<Driver, SetupError> {
     HcSr04Ring::new(ring, [0, 1].map(|_| Pin).map(|trigger| Pins { trigger, echo: Pin }), NoopDelay, settings)
 }
 
-/// The kinds of 20 readings of each module, where the wall is this many microseconds away from each.
+/// The kinds of 20 readings of each module, with a wall this many microseconds away.
 fn readings(echo_us: [u32; 2]) -> [Vec<ReadingKind>; 2] {
     let mut driver = driver(40).unwrap();
     let mut kinds = [vec![], vec![]];

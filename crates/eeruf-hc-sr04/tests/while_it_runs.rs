@@ -1,4 +1,4 @@
-//! Settings of a driver that may change while it runs.
+//! Settings of a driver that can change while it runs.
 
 use core::convert::Infallible;
 
@@ -19,14 +19,14 @@ fn fired(event: Option<RingEvent>) -> Option<u8> {
     }
 }
 
-/// A driver on pins that nobody looks at.
+/// A driver on dummy pins.
 fn on_no_pins<P: Plan, const N: usize>(
     ring: Ring<P, EchoFilter<N>, N>,
 ) -> Result<HcSr04Ring<Ring<P, EchoFilter<N>, N>, NoPin, NoPin, NoopDelay, N>, SetupError> {
     HcSr04Ring::new(ring, std::array::from_fn(|_| Pins { trigger: NoPin, echo: NoPin }), NoopDelay, Settings::default())
 }
 
-/// A pin that is low and stays so.
+/// A pin that is low and stays low.
 struct NoPin;
 
 impl ErrorType for NoPin {

@@ -1,7 +1,7 @@
 //! Modules on hardware that triggers them and captures their edges: [`Captures`], and [`CaptureRing`], a ring of them.
 //!
-//! A loop that comes round late fires late and stamps edges late; a peripheral does neither. The ring hands it each
-//! firing ahead of time, and later puts what it reports into the order in which it happened.
+//! A late loop fires late and stamps edges late; a peripheral does neither. The ring gives it each firing ahead of
+//! time, and later sorts its reports by time.
 //!
 //! | decoder | peripheral | its reports |
 //! |---|---|---|
@@ -9,9 +9,8 @@
 //! | [`RmtLine`] | receiver of an ESP32's RMT | levels and how long each lasted, once the line is idle |
 //! | [`TimerLine`] | input capture of an STM32's timer | registers of 16 bits, and flags |
 //!
-//! All of them become edges with the time, so that the driver judges lines by the same rules as those of interrupts:
-//! gaps, spikes, exchanged wires, lost edges. What a report leaves open is no edge, and silence without a rising edge
-//! is [`Unanswered`](eeruf_core::ReadingKind::Unanswered).
+//! All reports become time-stamped edges, so that the driver applies the same rules as to interrupts: gaps, spikes,
+//! exchanged wires, lost edges. Silence without a rising edge is [`Unanswered`](eeruf_core::ReadingKind::Unanswered).
 
 mod pio;
 mod ring;
@@ -30,20 +29,20 @@ pub use timer::{Captured, TimerLine};
 pub struct LineEdge {
     /// True if the line rose.
     pub high: bool,
-    /// When.
+    /// Time of the edge.
     pub at: Instant,
 }
 
 /// Hardware that triggers the modules of a ring at given instants and captures the edges of their lines.
 pub trait Captures {
-    /// Has a sensor triggered at an instant, or as soon after it as can be: returns when. `None` while the hardware is
-    /// busy with the sensor; it is then asked again.
+    /// Schedules the trigger of a sensor at an instant or as soon after it as possible, and returns its time. `None`
+    /// while the hardware is busy with the sensor; the ring then asks again.
     fn fire(&mut self, sensor: u8, at: Instant, now: Instant) -> Option<Instant>;
 
     /// The next edge of a sensor's line, the oldest first; `None` until the hardware reports one.
     fn edge(&mut self, sensor: u8, now: Instant) -> Option<LineEdge>;
 
-    /// Longest time from a firing to the report of its last edge; zero where edges are reported as they come.
+    /// Longest time from a firing to the report of its last edge; zero if edges are reported as they come.
     fn reports_within(&self) -> Micros {
         Micros::ZERO
     }

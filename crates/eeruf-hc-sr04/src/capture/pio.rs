@@ -4,7 +4,7 @@ use eeruf_core::{Instant, Micros};
 
 use super::LineEdge;
 
-/// Conditions of a jump, and where `in` takes its bits from.
+/// Conditions of jumps, and sources of `in`.
 const ALWAYS: u16 = 0;
 const X_COUNTS_DOWN: u16 = 2;
 const PIN: u16 = 6;
@@ -44,9 +44,9 @@ pub const PIO_HZ: u32 = 2_000_000;
 /// `out` shifting to the right, `in` to the left, without autopull and autopush.
 ///
 /// A firing takes the two words of [`PioLine::fire`]: microseconds to wait; then in the low 24 bits microseconds to
-/// listen, above them a tag. It reports a word for each edge, and one when it has listened: the tag, 23 bits of the
-/// microseconds that were left, all ones at the end, and in the lowest bit the level. A full FIFO loses words and never
-/// delays it.
+/// listen, above them a tag. It reports a word for each edge and one when it stops listening: the tag, 23 bits with the
+/// microseconds that were left (all ones at the end), and in the lowest bit the level. A full FIFO loses words and
+/// never delays it.
 pub const PIO_PROGRAM: [u16; 26] = {
     const LOW: u16 = 8;
     const ROSE: u16 = 11;
@@ -88,19 +88,20 @@ pub const PIO_PROGRAM: [u16; 26] = {
     ]
 };
 
-/// Time from the words of a firing to its trigger, beside the wait that they ask for.
+/// Time from the words of a firing to its trigger, in addition to the wait that they ask for.
 const STARTS_AFTER: u32 = 3;
-/// Time that a caller has to hand the words over, a choice.
+/// Time that a caller has to write the words, a choice.
 const HANDING_OVER: u32 = 5;
-/// Time from the start of the trigger, of 10 us, until the count begins.
+/// Time from the start of the 10 us trigger to the start of the count.
 const COUNTS_AFTER: Micros = Micros::new(11);
 /// The count at the end, below the tag.
 const ENDED: u32 = 0x7F_FFFF;
 
-/// A module on a PIO state machine that runs [`PIO_PROGRAM`]: the words that fire it, and the edges by its words.
+/// A module on a PIO state machine that runs [`PIO_PROGRAM`]: it makes the words that fire it, and decodes the words
+/// that report edges.
 ///
-/// Widths are exact to 3 us, since the program counts microseconds and not while it reports an edge. Words that come
-/// late are as good; those of an earlier firing, which the tag tells, are dropped.
+/// Widths are exact to 3 us, since the program counts microseconds and stops counting while it reports an edge. Late
+/// words are as good as punctual ones; words of an earlier firing, recognised by the tag, are dropped.
 #[derive(Clone, Copy, Debug)]
 pub struct PioLine {
     fired: Instant,
@@ -110,15 +111,15 @@ pub struct PioLine {
 }
 
 impl PioLine {
-    /// A module whose line is watched for this long after its trigger, of which up to 8 s count: for the window and
-    /// half a millisecond, and at least 11 ms less than the time until it fires again.
+    /// A module whose line is watched for this long after its trigger, at most 8 s. It should be the window plus half a
+    /// millisecond, and at least 11 ms less than the time until it fires again.
     pub const fn new(listens: Micros) -> Self {
         let listens = if listens.as_micros() < ENDED { listens } else { Micros::new(ENDED - 1) };
         Self { fired: Instant::from_micros(0), listens, tag: 0, is_busy: false }
     }
 
-    /// The words that have the module triggered at an instant, or now if that is past, and when that is. Hand them over
-    /// at once. `None` while the state machine listens: it would begin to wait when it has listened.
+    /// The words that trigger the module at an instant, or now if that is past, and the time of the trigger. Write them
+    /// at once. `None` while the state machine listens, since it would begin to wait only afterwards.
     pub fn fire(&mut self, at: Instant, now: Instant) -> Option<([u32; 2], Instant)> {
         // The word that ends a firing may have got lost.
         let listened = self.listens.saturating_add(Micros::from_millis(1));
@@ -133,8 +134,8 @@ impl PioLine {
         Some(([waits, u32::from(self.tag) << 24 | self.listens.as_micros()], at))
     }
 
-    /// The edge that a word of the state machine reports; `None` for the end of a firing, and for what an earlier one
-    /// left.
+    /// The edge that a word of the state machine reports; `None` for the end of a firing, and for remains of an earlier
+    /// one.
     pub fn edge(&mut self, word: u32) -> Option<LineEdge> {
         let (left, tag) = (word >> 1 & ENDED, word >> 24);
         if tag != u32::from(self.tag) {

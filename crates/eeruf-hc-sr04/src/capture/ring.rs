@@ -1,4 +1,4 @@
-//! [`CaptureRing`]: a ring whose modules hardware triggers and times.
+//! [`CaptureRing`]: a ring whose modules are triggered and timed by hardware.
 
 use eeruf_core::{Edge, Instant, Micros, Ring, RingEvent, judge::Judge, plan::Plan};
 
@@ -7,25 +7,25 @@ use crate::error::SetupError;
 use crate::ring::HcSr04Ring;
 use crate::settings::Settings;
 
-/// Firings go to the hardware this long ahead, a choice: a loop may come as late, less the time for which the hardware
-/// is busy with a sensor.
+/// Time by which firings go to the hardware ahead, a choice: a loop may be late by as much, less the time for which the
+/// hardware is busy with a sensor.
 const AHEAD: Micros = Micros::from_millis(10);
 
 /// A ring of modules on hardware that triggers them and captures their edges, such as PIO, RMT or a timer.
 ///
-/// The loop may come late by some milliseconds: firings are as exact as the hardware, and what it reports is judged as
-/// if the loop had been there.
+/// The loop may be late by some milliseconds: firings are as exact as the hardware, and its reports are judged as if
+/// the loop had been on time.
 #[derive(Debug)]
 pub struct CaptureRing<R, C, const K: usize> {
     ring: HcSr04Ring<R, (), (), (), K>,
     hardware: C,
-    /// Firings that the hardware has, in their order, and their number.
+    /// Firings that the hardware holds, in order, and their number.
     armed: [(u8, Instant); K],
     count: usize,
-    /// The last of them is later than it was due: all others move with it, once it has fired.
+    /// True if the last of them is later than it was due: all others move with it once it has fired.
     is_late: bool,
     is_held: bool,
-    /// An edge of each sensor that is later than the ring has been polled for.
+    /// For each sensor, an edge later than the last poll of the ring.
     waiting: [Option<LineEdge>; K],
 }
 
@@ -65,7 +65,7 @@ impl<P: Plan, J: Judge, C: Captures, const K: usize, const H: usize> CaptureRing
         Some(event)
     }
 
-    /// Hands the firings to the hardware that it should have by now.
+    /// Gives the hardware the firings that it should have by now.
     fn arm(&mut self, now: Instant) {
         while !self.is_held && !self.is_late {
             let Some(next) = self.ring.upcoming().nth(self.count) else { return };
@@ -80,8 +80,8 @@ impl<P: Plan, J: Judge, C: Captures, const K: usize, const H: usize> CaptureRing
         }
     }
 
-    /// The instant up to which the present has happened for the ring: the next firing's, and not beyond one that the
-    /// hardware has not made.
+    /// The instant up to which the ring can be polled: the next firing's, and not beyond a firing that the hardware has
+    /// not made.
     fn until(&self, now: Instant) -> Instant {
         let fires = self.armed.first().filter(|_| self.count > 0).map(|&(_, at)| at);
         match fires {
@@ -93,8 +93,8 @@ impl<P: Plan, J: Judge, C: Captures, const K: usize, const H: usize> CaptureRing
         }
     }
 
-    /// Returns the time to poll next: as [`Ring::next_deadline`], or when a firing is to go to the hardware. In the
-    /// past if an event is pending, or the hardware is busy with a sensor that is to fire.
+    /// Returns the time of the next poll: [`Ring::next_deadline`], or when a firing must go to the hardware. It is in
+    /// the past if an event is pending, or the hardware is busy with a sensor that must fire.
     pub fn next_deadline(&self) -> Instant {
         let deadline = self.ring.next_deadline();
         let next = self.ring.upcoming().nth(self.count).filter(|_| !self.is_held && !self.is_late);
@@ -102,13 +102,13 @@ impl<P: Plan, J: Judge, C: Captures, const K: usize, const H: usize> CaptureRing
         arms.filter(|arms| deadline.has_reached(*arms)).unwrap_or(deadline)
     }
 
-    /// Hands no further firings to the hardware, or does so again.
+    /// Stops giving firings to the hardware, or starts again.
     pub fn hold(&mut self, is_held: bool) {
         self.is_held = is_held;
     }
 
-    /// The driver, to pause or change it; `None` while the hardware has a firing to make. [Hold](Self::hold) the ring
-    /// and poll until it is there.
+    /// The driver, to pause or change it; `None` while the hardware still has a firing to make. [Hold](Self::hold) the
+    /// ring and poll until it is `Some`.
     pub fn driver_mut(&mut self) -> Option<&mut HcSr04Ring<Ring<P, J, K, 1, H>, (), (), (), K>> {
         if self.count == 0 { Some(&mut self.ring) } else { None }
     }
@@ -118,7 +118,7 @@ impl<P: Plan, J: Judge, C: Captures, const K: usize, const H: usize> CaptureRing
         &self.ring
     }
 
-    /// Takes the hardware back.
+    /// Returns the hardware.
     pub fn into_hardware(self) -> C {
         self.hardware
     }

@@ -4,15 +4,15 @@ use eeruf_core::{Instant, Micros};
 
 use super::LineEdge;
 
-/// Time from the trigger to the rise of the line, of which the receiver reports nothing: it begins with the first edge.
+/// Time from the trigger to the rise of the line. The receiver does not report it, as it begins with the first edge.
 const RISES_AFTER: Micros = Micros::new(450);
 
-/// A module on a receiver of an ESP32's RMT, which holds up to `N` symbols: the edges by what it received.
+/// A module on a receiver of an ESP32's RMT, which holds up to `N` symbols; it turns them into edges.
 ///
-/// A symbol is two levels, each with how long it lasted; 0 marks the level at the end, when the line had not changed
-/// for the idle threshold. Set that above the longest echo and below what a healthy module holds its line for: a line
-/// that is high for as long is free space. Start the receiver with each trigger. The time of the first edge is unknown
-/// and set to 450 us after the trigger, so exchanged wires go unseen.
+/// A symbol has two levels, each with its duration; 0 marks the last level, after which the line did not change for the
+/// idle threshold. Set that threshold above the longest echo and below the time for which a healthy module holds its
+/// line: a line that is high for as long means free space. Start the receiver with each trigger. The time of the first
+/// edge is unknown and set to 450 us after the trigger, so exchanged wires go unseen.
 ///
 /// ```
 /// use eeruf_core::{Instant, Micros};
@@ -28,31 +28,32 @@ pub struct RmtLine<const N: usize> {
     tick: Micros,
     idle: Micros,
     symbols: [u32; N],
-    /// Number of levels, and of those that are through.
+    /// Number of levels, and of those already decoded.
     levels: usize,
     next: usize,
     /// Time when the next level begins.
     at: Instant,
-    /// The last level.
+    /// The level before.
     was_high: bool,
 }
 
 impl<const N: usize> RmtLine<N> {
-    /// A module whose receiver counts by this tick, and ends when the line has not changed for `idle`, at most 32,767
+    /// A module whose receiver counts in this tick and stops when the line has not changed for `idle`, at most 32,767
     /// ticks: with 2 us, 65 ms.
     pub const fn new(tick: Micros, idle: Micros) -> Self {
         Self { tick, idle, symbols: [0; N], levels: 0, next: 0, at: Instant::from_micros(0), was_high: false }
     }
 
-    /// Takes in what was received of the firing at `fired`, once all edges of an earlier reception are out. Symbols
-    /// that have no room are lost.
+    /// Stores the symbols received for the firing at `fired`; take all edges of an earlier reception out first. Symbols
+    /// without room are lost.
     pub fn received(&mut self, fired: Instant, symbols: &[u32]) {
         self.levels = 2 * symbols.len().min(N);
         (self.next, self.at, self.was_high) = (0, fired + RISES_AFTER, false);
         self.symbols.iter_mut().zip(symbols).for_each(|(place, symbol)| *place = *symbol);
     }
 
-    /// The next edge. A line that is high at the end falls with the idle threshold, though in truth it falls later.
+    /// The next edge. A line that is still high at the end counts as fallen at the idle threshold, though it falls
+    /// later.
     pub fn edge(&mut self) -> Option<LineEdge> {
         while self.next <= self.levels && self.levels > 0 {
             let symbol = self.symbols.get(self.next / 2).map_or(0, |symbol| symbol >> (16 * (self.next % 2)));

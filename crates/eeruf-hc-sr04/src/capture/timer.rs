@@ -4,25 +4,25 @@ use eeruf_core::{Instant, Micros};
 
 use super::LineEdge;
 
-/// A register of 16 bits that counts microseconds is ambiguous after this time.
+/// Time after which a 16-bit register that counts microseconds is ambiguous.
 const WRAPS_AFTER: Micros = Micros::new(1 << 16);
 
 /// Capture registers of one line, read and cleared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Captured {
-    /// Counter at the last rise since the registers were read last, if there was one.
+    /// Counter at the last rise since the registers were last read, if there was one.
     pub rise: Option<u16>,
-    /// Counter at the last fall.
+    /// Counter at the last fall since then, if there was one.
     pub fall: Option<u16>,
     /// True if a register was overwritten before it was read (`CCxOF`).
     pub is_over: bool,
 }
 
-/// A module whose line a timer of 16 bits and 1 MHz captures, rises in one register and falls in another: the edges by
-/// what they hold.
+/// A module whose line is captured by a 16-bit timer at 1 MHz, rises in one register and falls in another; it turns the
+/// registers into edges.
 ///
-/// Read the registers at least every 65 ms. Later a register could be from before a wrap, and after an overcapture an
-/// edge is missing: either yields no edges at all, and silence without a rise is no free space.
+/// Read the registers at least every 65 ms. If they are read later, a register could be from before a wrap; after an
+/// overcapture an edge is missing. Both yield no edges at all, and silence without a rise is not free space.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TimerLine {
     /// Time when the registers were read last.
@@ -37,8 +37,8 @@ impl TimerLine {
         Self { read: None, edges: [None; 2] }
     }
 
-    /// Takes in registers that were read `now`, when the timer stood at `counter`. Take all [edges](Self::edge) of an
-    /// earlier reading out before.
+    /// Decodes registers that were read `now`, when the timer stood at `counter`. Take all [edges](Self::edge) of an
+    /// earlier reading out first.
     pub fn captured(&mut self, registers: Captured, counter: u16, now: Instant) {
         let is_ambiguous = self.read.is_none_or(|read| now.since(read) >= WRAPS_AFTER);
         self.read = Some(now);

@@ -8,7 +8,8 @@ use super::{Fault, Measured, Measures};
 use crate::modules::{MB1010, Module};
 use crate::settings::Settings;
 
-/// Time from one look for a pulse to the next, a choice: one that came sooner than it is wide is of an earlier start.
+/// Interval between two checks for a pulse, a choice. A pulse that ends sooner after the start than its width belongs
+/// to an earlier start.
 const LOOK_EVERY: Micros = Micros::from_millis(5);
 
 const SETTINGS: Settings = match Settings::of(&MB1010) {
@@ -16,8 +17,8 @@ const SETTINGS: Settings = match Settings::of(&MB1010) {
     None => panic!("an MB1010 answers by a pulse"),
 };
 
-/// A `MaxBotix` MB1010 (LV-MaxSonar-EZ1), started by its RX pin, whose pulses on PW a timer, PIO or RMT measures: hand
-/// each in by [`pulse`](Self::pulse).
+/// A `MaxBotix` MB1010 (LV-MaxSonar-EZ1), started by its RX pin, whose pulses on PW are measured by a timer, PIO or
+/// RMT: report each by [`pulse`](Self::pulse).
 ///
 /// RX high for 20 us starts a reading, and PW is high for 147 us per inch of range (LV-MaxSonar-EZ1 Data Sheet,
 /// `MaxBotix`), which is the echo time in air of 24 degrees. PW rises after the burst and falls with the echo, so its
@@ -29,7 +30,7 @@ pub struct Mb1010<T, D> {
     delay: D,
     is_started: bool,
     pulse: Option<Micros>,
-    /// True if another pulse of the same start was of another width.
+    /// True if another pulse of the same start had another width.
     differs: bool,
 }
 
@@ -39,7 +40,7 @@ impl<T: OutputPin, D: DelayNs> Mb1010<T, D> {
         Self { rx, delay, is_started: false, pulse: None, differs: false }
     }
 
-    /// Hands in the width of a pulse on PW, as soon as it has ended.
+    /// Reports the width of a pulse on PW, as soon as it has ended.
     pub fn pulse(&mut self, width: Micros) {
         if self.is_started {
             self.differs |= self.pulse.is_some_and(|before| before != width);
@@ -47,7 +48,7 @@ impl<T: OutputPin, D: DelayNs> Mb1010<T, D> {
         }
     }
 
-    /// Takes RX and the delay back.
+    /// Returns RX and the delay.
     pub fn release(self) -> (T, D) {
         (self.rx, self.delay)
     }

@@ -12,8 +12,8 @@
 //!
 //! Silence is no answer: a reading is [`Clear`](eeruf_core::ReadingKind::Clear) only after the module itself reported
 //! that nothing is in range, and [`Unanswered`](eeruf_core::ReadingKind::Unanswered) without a valid report. Each
-//! driver discards what an earlier measurement left behind. It cannot tell apart an answer that is late by a whole
-//! period, where the present one is missing.
+//! driver discards remains of an earlier measurement. It cannot recognise an answer that is late by a whole period if
+//! the present one is missing.
 
 mod mb1010;
 mod ring;
@@ -35,22 +35,23 @@ pub use us100::Us100;
 ///
 /// Neither function may wait for the measurement; a [`MeasuringRing`] has other modules to start meanwhile.
 pub trait Measures {
-    /// The module's figures: how long it takes to report, and how long it rests.
+    /// The module's figures, such as its time to report and its rest.
     fn module(&self) -> &Module;
 
-    /// Starts a measurement, and discards any result of an earlier one. Returns after which time to ask first.
+    /// Starts a measurement, and discards any result of an earlier one. Returns the time after which to ask first.
     ///
     /// # Errors
     /// [`Fault`] if the module was not started.
     fn start(&mut self) -> Result<Micros, Fault>;
 
-    /// The result of the measurement that was started `since` ago. Called until it is there, or it is too late.
+    /// The result of the measurement that was started `since` ago. The ring calls it until there is a result or the
+    /// time is over.
     ///
     /// # Errors
     /// [`Fault`] if there is no valid result. It is asked for again a little later.
     fn result(&mut self, since: Micros) -> Result<Measured, Fault>;
 
-    /// Longest time from the start to the result, after which the module counts as unanswered: by its figures, and an
+    /// Longest time from the start to the result, after which the module counts as unanswered: from its figures plus an
     /// eighth for its clock, a choice.
     fn answers_within(&self) -> Micros {
         let module = self.module();
@@ -80,7 +81,7 @@ impl<M: Measures + ?Sized> Measures for &mut M {
 /// The state of a measurement.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Measured {
-    /// The measurement is under way. Ask again when it was started this long ago.
+    /// The measurement is in progress. Ask again this long after its start.
     NotYet(Micros),
     /// An echo came back after this time.
     Echo(Micros),
@@ -88,7 +89,7 @@ pub enum Measured {
     Nothing,
 }
 
-/// The reason why there is no result. None of them says anything about the space before the module.
+/// The reason why there is no result. No fault says anything about the space before the module.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
     /// Silence: no byte, no pulse, or an address that is not acknowledged.
@@ -97,7 +98,7 @@ pub enum Fault {
     Bus,
     /// A part of the answer is missing.
     Truncated,
-    /// An answer that cannot be one of this measurement: an impossible value, several values, or one of earlier.
+    /// The answer cannot belong to this measurement: an impossible value, several values, or an earlier one.
     Invalid,
 }
 

@@ -8,11 +8,11 @@ use crate::hands_on::hands_on;
 use crate::health::Health;
 use crate::settings::Settings;
 
-/// After a fault the module is asked again this much later, a choice: a bus may have been disturbed.
+/// Delay before the module is asked again after a fault, a choice: the bus may have been disturbed.
 const RETRY: Micros = Micros::from_millis(1);
 
 /// A ring whose firings start modules that measure by themselves: a [`Ring`] of any plan and judge, and one module for
-/// each sensor. Modules that are not alike go together as `&mut dyn Measures`.
+/// each sensor. Different modules can be mixed as `&mut dyn Measures`.
 ///
 /// ```no_run
 /// # use embedded_hal::i2c::I2c;
@@ -49,17 +49,17 @@ struct State {
     step: Step,
     /// The last fault of this firing.
     fault: Option<Fault>,
-    /// Firings in a row without an answer.
+    /// Number of consecutive firings without an answer.
     silent: u8,
     health: Health,
 }
 
-/// Where a module is between its start and its reading.
+/// The state of a module between its start and its reading.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Step {
-    /// Nothing is expected.
+    /// No result is expected.
     Idle,
-    /// Started, and to be asked at `ask`.
+    /// The module was started; ask it at `ask`.
     Measures { started: Instant, ask: Instant },
     /// The measurement could not be started.
     Failed,
@@ -68,7 +68,7 @@ enum Step {
 impl State {
     const NEW: Self = Self { step: Step::Idle, fault: None, silent: 0, health: Health::Well };
 
-    /// The reading is emitted without an answer.
+    /// Ends the firing when its reading is emitted without an answer.
     fn end(&mut self) {
         if self.step == Step::Idle {
             return;
@@ -89,8 +89,8 @@ impl State {
 }
 
 impl<P: Plan, J: Judge, M: Measures, const K: usize, const H: usize> MeasuringRing<Ring<P, J, K, 1, H>, M, K> {
-    /// Puts a ring on its modules. Readings without an echo are emitted when the slowest module has reported or its
-    /// time is over ([`Measures::answers_within`]), or before the sensor fires again.
+    /// Puts a ring on its modules. Readings without an echo are emitted when the slowest module has reported or run out
+    /// of time ([`Measures::answers_within`]), or before the sensor fires again.
     ///
     /// # Errors
     /// [`SetupError::Retrigger`] if the ring fires a sensor again sooner than a module rests or reports.
@@ -111,7 +111,7 @@ impl<P: Plan, J: Judge, M: Measures, const K: usize, const H: usize> MeasuringRi
         Ok(Self { ring, modules, states: [State::NEW; K] })
     }
 
-    /// Like [`Ring::poll`], after asking the modules that may have a result, or before that if a firing is due.
+    /// Polls like [`Ring::poll`]. It first asks the modules that may have a result, or later if a firing is due.
     /// [`RingEvent::Fire`] is for information: the module has been started already. Read the clock for each call, since
     /// buses take time.
     pub fn poll(&mut self, now: Instant) -> Option<RingEvent> {
@@ -186,7 +186,7 @@ impl<P: Plan, J: Judge, M: Measures, const K: usize, const H: usize> MeasuringRi
         _ = self.ring.measured(sensor, t_echo);
     }
 
-    /// Returns the time to poll next: as [`Ring::next_deadline`], or when a module is to be asked. In the past if an
+    /// Returns the time of the next poll: [`Ring::next_deadline`], or when a module must be asked; in the past if an
     /// event is pending.
     pub fn next_deadline(&self) -> Instant {
         let asks = self.states.iter().filter_map(|state| match state.step {
@@ -196,9 +196,9 @@ impl<P: Plan, J: Judge, M: Measures, const K: usize, const H: usize> MeasuringRi
         asks.fold(self.ring.next_deadline(), |next, ask| if next.has_reached(ask) { ask } else { next })
     }
 
-    /// Health of a sensor at its last complete firing, by its answers: [`Health::PinError`] for an error of its bus,
-    /// [`Health::LosesEdges`] for a truncated answer, [`Health::Chatters`] for an invalid one. [`Health::Missing`] also
-    /// for one that the ring does not have.
+    /// Health of a sensor at its last complete firing, judging by its answers: [`Health::PinError`] for an error of its
+    /// bus, [`Health::LosesEdges`] for a truncated answer, [`Health::Chatters`] for an invalid one. A sensor that the
+    /// ring does not have is [`Health::Missing`].
     pub fn health(&self, sensor: u8) -> Health {
         self.states.get(usize::from(sensor)).map_or(Health::Missing, |state| state.health)
     }
@@ -208,7 +208,7 @@ impl<P: Plan, J: Judge, M: Measures, const K: usize, const H: usize> MeasuringRi
         self.modules.get_mut(usize::from(sensor))
     }
 
-    /// Like [`Ring::restart`]. Results of measurements under way are dropped.
+    /// Like [`Ring::restart`]. Results of measurements in progress are dropped.
     pub fn restart(&mut self, now: Instant) {
         for state in &mut self.states {
             state.step = Step::Idle;

@@ -9,11 +9,11 @@ use crate::modules::{Module, SRF08};
 /// Register 0 is the command when written, and the software revision when read; 1 is the light sensor, and 2 and 3 are
 /// the first echo, high byte first.
 const FIRST_REGISTER: u8 = 0;
-/// Ranging with the result in microseconds.
+/// Command for ranging with the result in microseconds.
 const RANGE_IN_US: u8 = 0x52;
-/// All bits of a bus that nobody drives, as while the module ranges.
+/// Value read from a bus that no device drives, as while the module ranges.
 const UNDRIVEN: u8 = 0xFF;
-/// Delay from the start to the check that it ranges: a choice, longer than a command takes at 100 kHz.
+/// Delay from the start to the check that the module ranges: a choice, longer than a command takes at 100 kHz.
 const IS_RANGING: Micros = Micros::from_millis(2);
 
 /// A Devantech SRF08, or another module with its registers, on an I2C bus.
@@ -21,8 +21,8 @@ const IS_RANGING: Micros = Micros::from_millis(2);
 /// It ranges for 65 ms, with the range register at its default, and does not respond meanwhile; register 2 then holds
 /// the time of the first echo, or 0 if there was none (SRF08 Technical Specification, Devantech). The driver reads it
 /// together with the revision; it refuses revision 0, a choice, as that is how a data line shorted to ground reads. If
-/// polled in the first half of the 65 ms it looks once that the module ranges: one that responds was not started, and
-/// its registers hold an earlier result.
+/// polled in the first half of the 65 ms, it checks once that the module ranges: if it responds, it was not started,
+/// and its registers hold an earlier result.
 ///
 /// Several modules share a bus by handles such as those of the crate `embedded-hal-bus`.
 #[derive(Debug)]
@@ -42,7 +42,7 @@ impl<B: I2c> Srf08<B> {
         Self { bus, address, is_idle: false }
     }
 
-    /// Takes the bus back.
+    /// Returns the bus.
     pub fn release(self) -> B {
         self.bus
     }

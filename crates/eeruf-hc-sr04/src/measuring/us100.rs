@@ -8,37 +8,36 @@ use crate::modules::{Module, US_100};
 
 /// The command that asks for a distance.
 const RANGE: u8 = 0x55;
-/// Most bytes that are taken from a line at once, a choice: more is no answer, and the loop has other things to do.
+/// Largest number of bytes taken from a line at once, a choice: more cannot be an answer, and the loop has other work.
 const MOST_BYTES: usize = 32;
-/// Most errors of a line that are passed over when it is cleared, a choice.
+/// Largest number of errors skipped when a line is cleared, a choice.
 const MOST_ERRORS: usize = 8;
-/// Time from one read of the line to the next, a choice. The receive buffer holds an answer of two bytes far longer.
+/// Interval between two reads of the line, a choice. The receive buffer holds an answer of two bytes far longer.
 const READ_EVERY: Micros = Micros::from_millis(5);
 
 /// A US-100 with its jumper set, on a serial line of 9600 baud.
 ///
 /// The byte 0x55 asks for a distance, and two bytes answer, high byte first, in millimetres ("US-100 with RT-Thread
-/// MicroPython", cnblogs 9486575). The burst leaves a millisecond after the poll, when that byte is through, for all
-/// modules alike. The module takes up to 100 ms, and the driver waits for all of them: what an earlier measurement sent
-/// late must not count. It drops what comes sooner than the echo that it tells of. An answer is one distance, or the
-/// same twice.
+/// MicroPython", cnblogs 9486575). The burst leaves a millisecond after the poll, when that byte has been sent. The
+/// module takes up to 100 ms, and the driver waits for all of it, so that late bytes of an earlier measurement do not
+/// count. It drops an answer that comes sooner than the echo it reports. An answer is one distance, or the same twice.
 ///
 /// **Nothing in range** is a distance beyond [`sees_to_mm`](Module::sees_to_mm), a choice, as no document says; beyond
-/// what sound travels within 100 ms it is invalid. The answer has no check sum: a flipped bit that leaves a possible
-/// distance is for the judge of the ring, which wants readings that agree.
+/// what sound travels within 100 ms it is invalid. The answer has no check sum: if a flipped bit leaves a possible
+/// distance, only the ring's judge can reject it.
 ///
-/// **Speed of sound.** The module makes millimetres of time by its own thermometer. This driver makes times of them by
-/// [`SpeedOfSound::AT_20_CELSIUS`], 343.2 m/s, or the one of [`with_speed`](Self::with_speed). Convert readings by the
-/// same and they are the module's millimetres again. The echo times are off by 0.18 % for each degree.
+/// **Speed of sound.** The module converts time to millimetres by its own thermometer. This driver converts them back
+/// with [`SpeedOfSound::AT_20_CELSIUS`], 343.2 m/s, or the speed of [`with_speed`](Self::with_speed). Convert readings
+/// with the same speed to get the module's millimetres. The echo times are off by 0.18 % for each degree.
 #[derive(Debug)]
 pub struct Us100<P> {
     port: P,
     speed: SpeedOfSound,
     bytes: [u8; 4],
     count: usize,
-    /// An answer came sooner than its own echo, or than the module can know that there is none: an earlier one's.
+    /// True if an answer came sooner than its own echo, or too soon to know that there is none: it is an earlier one's.
     is_stale: bool,
-    /// The line reported an error since the start.
+    /// True if the line reported an error since the start.
     broken: bool,
 }
 
@@ -55,12 +54,12 @@ impl<P: Read + ReadReady + Write> Us100<P> {
         Self { speed, ..self }
     }
 
-    /// Takes the port back.
+    /// Returns the port.
     pub fn release(self) -> P {
         self.port
     }
 
-    /// Reads what has come, up to an error. Returns false if there may be more.
+    /// Reads all bytes up to an error. Returns false if there may be more.
     fn read(&mut self, since: Micros) -> Result<bool, P::Error> {
         for _ in 0..MOST_BYTES {
             let mut byte = [0];

@@ -1,12 +1,12 @@
-//! A ring of four for modules that measure by themselves, and take 100 ms for it.
+//! A ring of four modules that measure by themselves and take 100 ms.
 
 use eeruf_core::{Instant, Layout, Micros, Requirements, Ring, RingConfig, ScheduledRing, VerifiedSchedule, schedule};
 
 pub(crate) const K: usize = 4;
-/// The clock wraps soon.
+/// Begin of a run, shortly before the clock wraps.
 pub(crate) const BEGIN: Instant = Instant::from_micros(u32::MAX - 700_000);
 
-/// A table that leaves each module 115 ms, as `eeruf design` gives it.
+/// A table from `eeruf design` that leaves each module 115 ms.
 static TABLE: VerifiedSchedule<K> = schedule! {
     period_us: 124_000,
     t_fire_a_us: [9_000, 37_000, 68_000, 96_000],

@@ -1,4 +1,4 @@
-//! Pins of lines that a test keeps.
+//! Pins whose lines a test controls.
 
 use std::cell::RefCell;
 use std::convert::Infallible;
@@ -9,7 +9,7 @@ use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
 /// The lines of all sensors.
 pub(crate) trait Lines {
     fn is_high(&self, sensor: u8) -> bool;
-    /// A trigger ends.
+    /// Notes the end of a trigger.
     fn trigger(&mut self, sensor: u8);
 }
 

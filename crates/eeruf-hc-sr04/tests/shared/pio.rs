@@ -1,4 +1,4 @@
-//! A PIO that runs the program of the driver by the cycle.
+//! A simulated PIO that runs the driver's program cycle by cycle.
 
 use std::collections::VecDeque;
 
@@ -32,7 +32,7 @@ impl StateMachine {
         self.begin + Micros::new((self.cycles / u64::from(PIO_HZ / 1_000_000)) as u32)
     }
 
-    /// Runs the program up to an instant; `pin` says what the line's level is then.
+    /// Runs the program up to an instant; `pin` gives the level of the line at each instant.
     pub(crate) fn run(
         &mut self,
         until: Instant,

@@ -1,5 +1,5 @@
-//! Sensors of a scene's first ring that hear each other, after how long, and how loud above what is just heard:
-//! `cargo run -p eeruf-sim --example critical_paths -- scenes/alcove.toml`
+//! Which sensors of a scene's first ring hear each other, after what time, and how far above the threshold: `cargo run
+//! -p eeruf-sim --example critical_paths -- scenes/alcove.toml`
 
 use std::{error::Error, path::PathBuf};
 

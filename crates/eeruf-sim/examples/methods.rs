@@ -1,5 +1,5 @@
-//! A scene file, and what three ways of firing make of it:
-//! `cargo run --release -p eeruf-sim --example methods -- scenes/alcove.toml`
+//! The results of three ways of firing in a scene file: `cargo run --release -p eeruf-sim --example methods --
+//! scenes/alcove.toml`
 
 use std::{error::Error, path::PathBuf};
 

@@ -1,5 +1,5 @@
-//! EERUF's simulator: which paths sound takes from one ultrasonic sensor to another, exactly, how loud it is when it
-//! arrives, and what whole rings make of it under each firing method.
+//! EERUF's simulator: the exact paths of sound from one ultrasonic sensor to another, its loudness on arrival, and the
+//! readings of whole rings under each firing method.
 //!
 //! - A [`Scene`] is walls, poles and air, checked once. [`Scene::paths`] answers with *every* specular path; a
 //!   [`Tracer`] does so again and again without allocating.
@@ -13,10 +13,10 @@
 //!   runs the ring of `eeruf-core` through simulated time under a [`Method`]. Every one of the [`Readings`] knows what
 //!   caused it; [`Summary`] counts the errors and [`Attribution`] says who was fooled by whom.
 //!
-//! Which effects a world has, its [`Physics`] says; `docs/explanation/physics.md` in the repository says what is
-//! computed and what is left out.
+//! A world's [`Physics`] lists its effects; `docs/explanation/physics.md` in the repository explains what is computed
+//! and what is left out.
 //!
-//! The rooms, each of which uses only those before it:
+//! The modules, each of which uses only those before it:
 //!
 //! | room | what is in it |
 //! |---|---|
@@ -107,7 +107,7 @@ pub use world::{
     ScheduleFile, Sketch, World, WorldError, WorldParts, line_edges, ring_of, world_file,
 };
 
-/// The listing of the crate's README compiles and holds.
+/// Doctest of the crate's README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

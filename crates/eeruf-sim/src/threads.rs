@@ -1,4 +1,4 @@
-//! Work on all cores, and how it ends early.
+//! Parallel work on all cores, and its cancellation.
 
 use std::{
     process,
@@ -10,8 +10,8 @@ use std::{
 
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder, prelude::*};
 
-/// A thread pool for parallel iterators, of the process that asks: no thread survives a `fork`, so a child that asked
-/// its parent's pool for anything would wait for ever. Rayon's global pool is never used.
+/// A thread pool for parallel iterators, separate for each process: no thread survives a `fork`, so a child that used
+/// its parent's pool would wait forever. Rayon's global pool is never used.
 #[derive(Debug, Default)]
 pub struct Threads {
     number: usize,
@@ -20,12 +20,12 @@ pub struct Threads {
 }
 
 impl Threads {
-    /// This number of threads, to be started when first asked for; 0 for one a core.
+    /// A pool of this many threads, started on demand; 0 for one per core.
     pub const fn new(number: usize) -> Self {
         Self { number, pool: Mutex::new(None) }
     }
 
-    /// Returns a setting of as many threads, in a pool apart.
+    /// Returns a separate pool with as many threads.
     #[must_use]
     pub const fn others(&self) -> Self {
         Self::new(self.number)
@@ -47,7 +47,7 @@ impl Threads {
     }
 }
 
-/// Drops a pool, but not one of the parent's, which would wake threads that are not here.
+/// Drops a pool, unless it is the parent's, whose threads do not exist in this process.
 fn forget(pool: &mut Option<(u32, Arc<ThreadPool>)>) {
     if let Some((process, pool)) = pool.take()
         && process != process::id()
@@ -62,8 +62,7 @@ impl Drop for Threads {
     }
 }
 
-/// Does work whose parallel iterators use all cores: on the caller's pool if it is called in one, else on one of its
-/// own.
+/// Runs work whose parallel iterators use all cores: on the caller's pool if there is one, otherwise on its own.
 pub(crate) fn on_all_cores<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     if rayon::current_thread_index().is_some() {
         return work();
@@ -76,8 +75,8 @@ pub(crate) fn on_all_cores<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     }
 }
 
-/// Several simulations at once on all cores, the answers in the order of the jobs. What comes out does not depend on
-/// the number of threads.
+/// Runs several simulations at once on all cores; the answers are in the order of the jobs and do not depend on the
+/// number of threads.
 ///
 /// ```
 /// assert_eq!(eeruf_sim::sweep(&[1, 2, 3], |seed| seed * seed), [1, 4, 9]);
@@ -86,7 +85,7 @@ pub fn sweep<J: Sync, T: Send>(jobs: &[J], run: impl Fn(&J) -> T + Sync + Send) 
     on_all_cores(|| jobs.par_iter().map(run).collect())
 }
 
-/// Ends work under way, from any thread: clones are one switch. Once stopped it stays so.
+/// A switch that ends running work from any thread: all clones are one switch, and it cannot be reset.
 ///
 /// ```
 /// use eeruf_sim::Stop;
@@ -98,7 +97,7 @@ pub fn sweep<J: Sync, T: Send>(jobs: &[J], run: impl Fn(&J) -> T + Sync + Send) 
 pub struct Stop(Arc<AtomicBool>);
 
 impl Stop {
-    /// Ends all work that has a clone of this one, soon.
+    /// Ends all work that has a clone of this switch.
     pub fn stop(&self) {
         self.0.store(true, Ordering::Relaxed);
     }

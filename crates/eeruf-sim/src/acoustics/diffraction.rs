@@ -1,5 +1,5 @@
-//! Waves at small and sharp things: the rigid cylinder that a pole is, and the edge where two walls meet outwards.
-//! Both correct or complete what geometric optics says; neither changes where a path runs.
+//! Waves at small and sharp objects: poles as rigid cylinders, and outward edges of two walls. Both correct or complete
+//! geometric optics; neither changes the course of a path.
 
 use core::f64::consts::{PI, TAU};
 
@@ -51,8 +51,8 @@ pub fn pole_wave_correction(ka: f64, incidence_rad: f64) -> f64 {
 ///
 /// `wave_number` in rad/m; `outside_rad` is the open angle around the edge (3 pi / 2 at a right-angle corner seen from
 /// outside); the two directions are measured from one of the walls. At distances `s'` and `s` the amplitude relative to
-/// 1 m is this over `sqrt(s' s (s' + s))`. It grows without bound where a wall's own reflection or shadow begins, and
-/// is no better than geometric optics there.
+/// 1 m is this over `sqrt(s' s (s' + s))`. It grows without bound where a wall's own reflection or shadow begins, where
+/// geometric optics fails too.
 pub fn edge_diffraction(wave_number: f64, outside_rad: f64, from_rad: f64, to_rad: f64) -> f64 {
     let n = outside_rad / PI;
     let turn = libm::cos(PI / n);

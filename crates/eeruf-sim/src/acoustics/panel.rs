@@ -1,21 +1,21 @@
-//! Reflection of a wall that is not wide against the first Fresnel zone: Fresnel's integral over its width.
+//! Reflection of a wall that is narrow compared with the first Fresnel zone: Fresnel's integral over its width.
 
 use core::f64::consts::FRAC_1_SQRT_2;
 
 use eeruf_modules::fresnel;
 
-/// No part of a wall returns more than this of what a whole wall does, `sqrt(2) |F(1.209)|`, 2.6 dB; rounded upwards.
+/// Largest reflection of a part of a wall relative to the whole wall's, `sqrt(2) |F(1.209)|`, 2.6 dB; rounded up.
 pub(crate) const LOUDEST_PANEL: f64 = 1.342_17;
 
-/// Share of an endless wall's reflection that a part of it returns, which ends at two edges. Each is given by how much
-/// longer the way by it is than the path, in wavelengths; infinite where the wall does not end. `beside` says that the
-/// point of reflection does not lie between them.
+/// Share of an endless wall's reflection that a part between two edges returns. Each edge is given by the detour over
+/// it, in wavelengths; infinite if the wall does not end there. `beside` is true if the point of reflection does not
+/// lie between them.
 ///
 /// ```text
 /// |F(v2) -+ F(v1)| / sqrt(2),    v = 2 sqrt(detour / lambda),    F = C + i S
 /// ```
 ///
-/// The difference of two numbers that are nearly equal is no better than the error of [`fresnel`]: below 2e-7.
+/// The absolute error is that of [`fresnel`], below 2e-7.
 pub(crate) fn panel_share(detours: [f64; 2], beside: bool) -> f64 {
     let [near, far] = detours.map(|detour| fresnel(2.0 * detour.max(0.0).sqrt()));
     let sign = if beside { -1.0 } else { 1.0 };

@@ -1,4 +1,4 @@
-//! Effects of a world: the presets `plain` and `default`, and what can be switched one by one.
+//! Effects of a world: the presets `plain` and `default`, and the single effects.
 
 use core::fmt;
 use core::str::FromStr;
@@ -15,14 +15,14 @@ use serde::ser::{Serialize, SerializeStruct as _, Serializer};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Physics {
-    /// True if a pole shades what lies behind it where it is thicker than sound can bend around: where its radius
-    /// exceeds that of the first Fresnel zone, `sqrt(lambda d1 d2 / (d1 + d2))`. A sensor within a pole or a wall is
-    /// then refused as well. Robots' bodies shade in any case.
+    /// True if a pole shades what lies behind it when sound cannot bend around it: when its radius exceeds that of the
+    /// first Fresnel zone, `sqrt(lambda d1 d2 / (d1 + d2))`. Sensors inside a pole or a wall are then refused too.
+    /// Robots' bodies always shade.
     pub shadows: bool,
     /// True if the free ends of walls and the corners that jut out diffract, once and in plain sight.
     pub edges: bool,
-    /// True if a wall that is narrow against the first Fresnel zone, `sqrt(lambda r)` wide at distance r, returns as
-    /// much as its width does instead of what an endless wall does.
+    /// True if a wall that is narrow against the first Fresnel zone, `sqrt(lambda r)` wide at distance r, reflects
+    /// according to its width instead of like an endless wall.
     pub narrow_panels: bool,
     /// True if a threshold detector hears faint echoes later. An echo just at the threshold is heard a whole burst
     /// late.
@@ -32,14 +32,14 @@ pub struct Physics {
     /// is heard on its own. No preset has it.
     pub interference: bool,
     /// Time for which a path fades in the same way, in seconds: the time after which the correlation has fallen to 1/e.
-    /// At 0 every firing fades on its own, and by its number among the firings of its sensor.
+    /// At 0 each firing fades independently, by its number among the firings of its sensor.
     pub fading_time_s: f64,
 }
 
 impl Physics {
-    /// The simplest physics, which the simulator began with and methods were tuned under: poles of any thickness are
-    /// transparent, edges are silent, a wall returns as much however narrow it is, an echo is heard at its onset
-    /// however faint it is, and each arrival fades on its own.
+    /// The simplest physics, under which methods were tuned: poles of any thickness are transparent, edges are silent,
+    /// narrow walls reflect like wide ones, faint echoes are heard at their onset, and each arrival fades
+    /// independently.
     pub const PLAIN: Self = Self {
         shadows: false,
         edges: false,
@@ -49,8 +49,8 @@ impl Physics {
         fading_time_s: 0.0,
     };
 
-    /// The default of worlds: everything on but `interference`, with the numbers that `docs/explanation/physics.md`
-    /// gives reasons for.
+    /// The default of worlds: everything on except `interference`, with the numbers explained in
+    /// `docs/explanation/physics.md`.
     pub const DEFAULT: Self = Self {
         shadows: true,
         edges: true,
@@ -63,7 +63,7 @@ impl Physics {
     /// The presets by their names.
     pub const PRESETS: [(&'static str, Self); 2] = [("plain", Self::PLAIN), ("default", Self::DEFAULT)];
 
-    /// The name of the preset that this is, if it is one.
+    /// The name of this preset; `None` for other physics.
     pub fn name(&self) -> Option<&'static str> {
         Self::PRESETS.iter().find(|(_, preset)| preset == self).map(|(name, _)| *name)
     }
@@ -79,7 +79,7 @@ impl Physics {
     }
 }
 
-/// The preset's name, or what each effect is.
+/// The preset's name, or a list of the effects.
 impl fmt::Display for Physics {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match (self.name(), self) {
@@ -110,7 +110,7 @@ impl Serialize for Physics {
     }
 }
 
-/// A name that no preset has.
+/// A name that is no preset's.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownPhysics(String);
 

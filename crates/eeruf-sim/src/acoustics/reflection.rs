@@ -1,4 +1,4 @@
-//! Amplitude that is left along one path, relative to 1 m on the transducer's axis:
+//! Amplitude after one path, relative to 1 m on the transducer's axis:
 //!
 //! ```text
 //! A = D(departure) D(arrival) * product of R_i * 10^(-alpha L / 20) / L

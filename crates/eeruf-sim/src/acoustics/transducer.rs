@@ -1,15 +1,15 @@
-//! Transducers and their ranging modules: frequency, size, burst, blanking, range, gain over time and what is just
-//! heard.
+//! Transducers and their ranging modules: frequency, size, burst, blanking, range, gain over time and threshold of
+//! hearing.
 
 use eeruf_modules::{Beam, Gain as GainProfile, Module, Piston};
 
 use crate::scene::Air;
 
-/// In how many steps [`GainProfile::Stepped`] grows.
+/// Number of steps by which [`GainProfile::Stepped`] grows.
 const GAIN_STEPS: f64 = 12.0;
 
-/// The clock of the TL851 in Hz, a ceramic resonator, and at how many of its cycles after firing the gain steps up:
-/// 1,000, then 1,152 for each step, and 2,304 for each of the last three.
+/// The clock of the TL851 in Hz, a ceramic resonator, and its cycles between steps of the gain: 1,000, then 1,152 for
+/// each step, and 2,304 for each of the last three.
 const TL851_HZ: f64 = 420e3;
 const TL851_STEPS: [u32; 11] = [1000, 2152, 3304, 4456, 5608, 6760, 7912, 9064, 11_368, 13_672, 15_976];
 /// Height of a step of [`GainProfile::Polaroid6500`], in dB.
@@ -56,7 +56,7 @@ pub struct Transducer {
     pub bandwidth_hz: f64,
     /// Radius of the piston in metres.
     pub radius_m: f64,
-    /// Least amplitude of the pattern in front, see [`Piston::floor`].
+    /// Least amplitude of the pattern in front; see [`Piston::floor`].
     pub pattern_floor: f64,
     /// The pattern near 90 degrees and beyond.
     pub beam: Beam,
@@ -79,7 +79,7 @@ impl Transducer {
     /// `docs/explanation/physics.md`.
     pub const HC_SR04: Self = Self::of(&eeruf_modules::HC_SR04);
 
-    /// Sending and hearing of a module.
+    /// The acoustics of a module.
     pub const fn of(module: &Module) -> Self {
         Self {
             frequency_hz: module.frequency_hz as f64,
@@ -94,7 +94,7 @@ impl Transducer {
         }
     }
 
-    /// The module that is `like` another one but for what is sent and heard, in whole numbers.
+    /// The module that is `like` another one except for its acoustics, in whole numbers.
     pub(crate) fn described(&self, like: &Module) -> Module {
         let whole = |value: f64| value.round() as u32;
         Module {
@@ -120,7 +120,7 @@ impl Transducer {
         Piston { floor: self.pattern_floor, beam: self.beam, ..Piston::new(self.wave_number(air), self.radius_m) }
     }
 
-    /// Returns true if it hears the sound of another kind: whether their bands overlap. Whoever sends is heard in turn.
+    /// Returns true if it hears the sound of another kind, which it does if their bands overlap. Hearing is mutual.
     ///
     /// ```
     /// use eeruf_sim::Transducer;

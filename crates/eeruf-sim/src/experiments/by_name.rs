@@ -1,4 +1,4 @@
-//! Methods and what belongs to them, as a map from their names in JSON.
+//! Maps from methods' names in JSON to their values.
 
 use serde::{Serialize, Serializer, ser::SerializeMap};
 
@@ -13,7 +13,7 @@ pub(super) fn by_name<S: Serializer, T: Serialize>(entries: &[(String, T)], seri
     map.end()
 }
 
-/// Pairs each of some methods' names with what belongs to it.
+/// Pairs of methods' names and values.
 pub(super) fn named<T>(methods: &[Entry], of: impl IntoIterator<Item = T>) -> Vec<(String, T)> {
     methods.iter().map(|entry| entry.name().to_owned()).zip(of).collect()
 }

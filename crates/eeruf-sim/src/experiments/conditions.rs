@@ -7,7 +7,7 @@ use serde::Serialize;
 use crate::acoustics::GainProfile;
 use crate::scene::Room;
 
-/// Height and gain of an experiment, where they are not the usual ones: flat, and constant.
+/// Height and gain of an experiment; the defaults are flat and constant.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
 pub struct Conditions {
     /// `"room"` between floor and ceiling.
@@ -19,14 +19,14 @@ pub struct Conditions {
 }
 
 impl Conditions {
-    /// Takes the conditions of a room, or of none, and of a gain.
+    /// Conditions from an optional room and a gain.
     pub fn of(room: Option<&Room>, gain: GainProfile) -> Self {
         let gain = Some(gain).filter(|gain| *gain != GainProfile::Constant);
         Self { height: room.map(|_| "room"), gain: gain.map(GainProfile::name) }
     }
 }
 
-/// The words after the name of the physics in a title; nothing where both are usual.
+/// The words after the name of the physics in a title; nothing for the defaults.
 impl fmt::Display for Conditions {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         self.height.map_or(Ok(()), |height| write!(f, ", height: {height}"))?;

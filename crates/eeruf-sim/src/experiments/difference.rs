@@ -49,7 +49,7 @@ impl Difference {
     }
 }
 
-/// Number of the least and of the greatest of `n` values that lie outside the sign test's 95 % interval of the median.
+/// Number of values, of `n`, below and above the sign test's 95 % interval of the median.
 fn outside(n: usize) -> Option<usize> {
     let mut below = 0.0;
     let beyond = (0..n).find(|&k| {

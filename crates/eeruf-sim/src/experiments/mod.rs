@@ -1,5 +1,5 @@
 //! The paper's experiments, made repeatable: Set I before three walls, Set II through courses of poles; and Set III
-//! among robots of one make. It uses all other rooms, and none uses it.
+//! among robots of one make. It uses all other modules, and none uses it.
 
 mod by_name;
 mod conditions;
@@ -18,6 +18,6 @@ pub use difference::Difference;
 pub use error::ExperimentError;
 pub use spread::Spread;
 
-/// The number of the first geometry or course unless another is asked for. What has parameters was tuned on numbers
-/// below 2,000, so what is reported starts far from them.
+/// The number of the first geometry or course unless another is asked for. Parameters were tuned on numbers below
+/// 2,000, so reports start far from them.
 pub const FIRST: u64 = 20_000;

@@ -1,9 +1,8 @@
-//! Progress of an experiment on many threads, and whether it goes on: one that is stopped should not wait for the
-//! simulations under way.
+//! Progress of an experiment on many threads, and its cancellation, which does not wait for running simulations.
 
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 
-/// Asks with the share that is done, 0 to 1; the first `false` stops all threads.
+/// Reporter of progress: it calls back with the finished share, 0 to 1; the first `false` stops all threads.
 pub(super) struct Progress<'a> {
     keep_going: &'a (dyn Fn(f64) -> bool + Sync),
     all: u64,
@@ -12,12 +11,12 @@ pub(super) struct Progress<'a> {
 }
 
 impl<'a> Progress<'a> {
-    /// For this number of simulations.
+    /// Progress for this number of simulations.
     pub(super) fn new(all: u64, keep_going: &'a (dyn Fn(f64) -> bool + Sync)) -> Self {
         Self { keep_going, all, done: AtomicU64::new(0), stopped: AtomicBool::new(false) }
     }
 
-    /// True to go on; to be asked in the middle of a simulation as well.
+    /// Returns true to continue; it is also called in the middle of a simulation.
     pub(super) fn go_on(&self) -> bool {
         let share = self.done.load(Ordering::Relaxed) as f64 / self.all as f64;
         let going = !self.stopped() && (self.keep_going)(share);
@@ -27,13 +26,13 @@ impl<'a> Progress<'a> {
         going
     }
 
-    /// One simulation has ended.
+    /// Notes that one simulation has ended.
     pub(super) fn one_done(&self) {
         self.done.fetch_add(1, Ordering::Relaxed);
         self.go_on();
     }
 
-    /// Returns true if an answer was `false`.
+    /// Returns true if the callback returned `false`.
     pub(super) fn stopped(&self) -> bool {
         self.stopped.load(Ordering::Relaxed)
     }

@@ -7,11 +7,11 @@ use crate::{results::quantile, world::Random};
 /// Quantiles of a figure over many runs.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Spread {
-    /// One run in ten has no more.
+    /// The value that one run in ten does not exceed.
     pub p10: f64,
-    /// Half of the runs have no more.
+    /// The value that half of the runs do not exceed.
     pub median: f64,
-    /// Nine runs in ten have no more.
+    /// The value that nine runs in ten do not exceed.
     pub p90: f64,
     /// 95 % confidence interval of the median, by bootstrap.
     pub median_95: [f64; 2],
@@ -25,7 +25,7 @@ pub struct Spread {
 
 /// Number of samples that the bootstrap draws.
 const SAMPLES: usize = 1000;
-/// Seeds the bootstrap, so that the same values have the same intervals.
+/// Seed of the bootstrap, so that equal values have equal intervals.
 const SEED: u64 = 1979;
 
 impl Spread {
@@ -70,9 +70,9 @@ pub(super) fn interval_95(values: &[f64], figure: impl Fn(&mut [f64]) -> f64) ->
     [0.025, 0.975].map(|share| quantile(&mut figures, share))
 }
 
-/// Where a share lies with 95 % confidence, of which `count` in `of` trials were seen: Wilson's interval (E. B. Wilson,
+/// The 95 % confidence interval of a share that was seen in `count` of `of` trials: Wilson's interval (E. B. Wilson,
 /// "Probable inference, the law of succession, and statistical inference", J. Am. Stat. Assoc. 22, 1927). Unlike the
-/// bootstrap's it does not shrink to nothing at none and at all.
+/// bootstrap's, it does not vanish for 0 and for `of`.
 pub(super) fn share_95(count: usize, of: usize) -> [f64; 2] {
     if of == 0 {
         return [0.0, 1.0];

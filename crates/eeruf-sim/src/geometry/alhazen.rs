@@ -1,5 +1,5 @@
 //! Alhazen's problem: the point of a circle at which sound from one point is reflected to another, with equal angles.
-//! For points outside the circle there is exactly one, unless the circle stands between them.
+//! For two points outside the circle there is exactly one, unless the circle lies between them.
 
 use super::plane::{Point, Vector, cross};
 
@@ -16,8 +16,7 @@ pub struct Specular {
     pub after_m: f64,
 }
 
-/// Solves for the specular point to the last digits, or says that there is none: a point inside the circle, or the
-/// circle in between.
+/// Finds the specular point to the last digits; `None` if a point is inside the circle or the circle lies in between.
 ///
 /// As the point moves from the source's direction towards the receiver's, the angle of incidence seen from the source
 /// grows and the one seen from the receiver falls, so their difference has one root. Newton's method finds it from
@@ -33,7 +32,7 @@ pub fn alhazen(source: Point, receiver: Point, centre: Point, radius_m: f64) -> 
     specular(source, receiver, centre, balance(source, receiver, (centre, radius_m))?)
 }
 
-/// The reflection at the point of a circle that has this normal; none where the circle is in between.
+/// The reflection at the point of a circle with this normal; `None` if the circle lies in between.
 fn specular(source: Point, receiver: Point, centre: Point, normal: Normal) -> Option<Specular> {
     let point = centre + normal.unit * normal.radius_m;
     let (back, on) = (source - point, receiver - point);
@@ -54,7 +53,7 @@ struct Normal {
     radius_m: f64,
 }
 
-/// The point of the circle with equal angles, in sight or not; none when a point is not outside the circle.
+/// The point of the circle with equal angles, visible or not; `None` unless both points are outside the circle.
 fn balance(source: Point, receiver: Point, circle: (Point, f64)) -> Option<Normal> {
     let (centre, radius_m) = circle;
     let (to_source, to_receiver) = (source - centre, receiver - centre);
@@ -85,8 +84,8 @@ struct Problem {
     radius: f64,
 }
 
-/// A difference of the two angles, in radians, after which Newton's method has come as near as rounding lets it: what
-/// is left is of its square.
+/// Difference of the two angles, in radians, at which Newton's method stops: the remaining error is of the order of its
+/// square.
 const LAST: f64 = 1e-9;
 
 impl Problem {
@@ -129,7 +128,7 @@ impl Problem {
         normal
     }
 
-    /// True for a direction from the one to the other, counter-clockwise by half a turn at most.
+    /// Returns true for a direction between the two, counter-clockwise by at most half a turn.
     fn holds(low: Vector, high: Vector, direction: Vector) -> bool {
         cross(low, direction) >= 0.0 && cross(direction, high) >= 0.0 && (low + high).dot(&direction) >= 0.0
     }
@@ -145,9 +144,9 @@ fn rotated(direction: Vector, angle: f64) -> Vector {
 
 /// Source, one circle, another circle, receiver: the two specular points of the path that bounces once at each.
 ///
-/// Newton's method moves both points at once. Where it does not settle, as between circles that nearly touch, one
-/// circle after the other is solved with the other's point held: where all legs are in sight, the length is strictly
-/// convex in both points together, and each solution is its minimum in one of them.
+/// Newton's method moves both points at once. If it does not converge, as between circles that nearly touch, the
+/// circles are solved alternately with the other point fixed: while all legs are visible, the length is strictly convex
+/// in both points, and each solution is its minimum in one of them.
 pub fn alhazen_twice(
     source: Point,
     receiver: Point,
@@ -178,8 +177,8 @@ pub fn alhazen_twice(
 }
 
 /// The first normal to try for two points as seen from a circle's centre: between them, nearer to the one that is
-/// nearer to the circle. It is exact for a flat mirror, of which the circle is as large as can be, and for a circle
-/// that is small against both distances.
+/// nearer to the circle. It is exact in the limits of a flat mirror and of a circle that is small compared with both
+/// distances.
 fn start(to_here: Vector, to_there: Vector, radius_m: f64) -> Vector {
     let (far_here, far_there) = (to_here.norm(), to_there.norm());
     let [near_here, near_there] = [far_here, far_there].map(|far| 1.0 - radius_m / far);
@@ -189,7 +188,7 @@ fn start(to_here: Vector, to_there: Vector, radius_m: f64) -> Vector {
     if length > LAST * (near_here + near_there) { between / length } else { perpendicular(to_here / far_here) }
 }
 
-/// Newton's method for both normals; none where it does not settle.
+/// Newton's method for both normals; `None` if it does not converge.
 fn both_at_once(
     source: Point,
     receiver: Point,
@@ -221,7 +220,7 @@ fn both_at_once(
     None
 }
 
-/// Both legs at a point of a circle, along its normal and across.
+/// Components of both legs at a point of a circle, along its normal and across.
 struct Balance {
     along: [f64; 2],
     across: [f64; 2],
@@ -232,20 +231,20 @@ impl Balance {
         Self { along: [normal.dot(&back), normal.dot(&on)], across: [cross(normal, back), cross(normal, on)] }
     }
 
-    /// The angle of the one leg less that of the other, which is 0 in balance; none where it is no longer small.
+    /// The angle of one leg less that of the other, which is 0 in balance; `None` if it is not small.
     fn excess(&self) -> Option<f64> {
         let sin = self.across[0] * self.along[1] + self.along[0] * self.across[1];
         let cos = self.along[0] * self.along[1] - self.across[0] * self.across[1];
         (cos > 0.0).then(|| arc_tangent(sin / cos))
     }
 
-    /// Growth of that angle with the normal's.
+    /// Derivative of that angle by the normal's.
     fn slope(&self, back: Vector, on: Vector, radius_m: f64) -> f64 {
         -2.0 - radius_m * (self.along[0] / back.norm_squared() + self.along[1] / on.norm_squared())
     }
 }
 
-/// The arc tangent of what is small, to its sixth power.
+/// The arc tangent of a small number, to its sixth power.
 fn arc_tangent(tangent: f64) -> f64 {
     let square = tangent * tangent;
     tangent * (15.0 + 4.0 * square) / (15.0 + 9.0 * square)

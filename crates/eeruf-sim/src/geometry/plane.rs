@@ -1,6 +1,5 @@
-//! Points and the few operations on them that everything else is made of.
-//! The types are nalgebra's; what is added is the cross product as an orientation test, and
-//! angles.
+//! Points and the few operations on them that all else needs. The types are nalgebra's, with the cross product as an
+//! orientation test, and angles.
 
 use nalgebra::{Point2, Vector2};
 
@@ -11,13 +10,13 @@ pub type Vector = Vector2<f64>;
 /// Position and heading of a robot or a transducer.
 pub type Pose = nalgebra::Isometry2<f64>;
 
-/// A pose of a file.
+/// The pose in a file's form.
 pub fn pose_of(pose: &eeruf_files::Pose) -> Pose {
     Pose::new(Vector::new(pose.x_m, pose.y_m), pose.heading_rad)
 }
 
-/// Two points nearer than this are one: joined walls, doubles of one path, a source on top of its receiver. A choice:
-/// above rounding in a room, below any real length.
+/// Distance below which two points are one: joined walls, doubles of one path, a source on top of its receiver. A
+/// choice: above rounding in a room, below any real length.
 pub const TOUCH_M: f64 = 1e-9;
 
 /// An angle below this counts as none when a receiver is compared with a beam's limit. Rounding stays under 1e-15 per

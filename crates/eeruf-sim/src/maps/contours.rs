@@ -1,4 +1,4 @@
-//! The outlines of what is occupied: closed lines from corner to corner of cells.
+//! The outlines of occupied cells: closed lines from corner to corner of cells.
 
 /// A corner of cells, counted from the map's lower left.
 pub(super) type Corner = [i64; 2];
@@ -6,7 +6,7 @@ pub(super) type Corner = [i64; 2];
 /// Headings, counter-clockwise from along x.
 const STEPS: [Corner; 4] = [[1, 0], [0, 1], [-1, 0], [0, -1]];
 
-/// The outlines of the occupied cells, each a closed line through the corners at which it turns, with what is free on
+/// The outlines of the occupied cells, each a closed line through the corners at which it turns, with the free space on
 /// its left. Occupied cells that touch at a corner belong together, so that no sound slips through a slanted wall.
 ///
 /// `occupied` is asked for cells inside `width` times `height` alone; nothing is occupied outside.

@@ -1,4 +1,4 @@
-//! An occupancy grid, and the walls that it stands for.
+//! An occupancy grid, and its conversion to walls.
 
 use std::fs;
 use std::path::Path;
@@ -9,8 +9,8 @@ use super::contours::contours;
 use super::{pgm, simplify, yaml};
 use crate::scene::Wall;
 
-/// The grey of cells of which nothing is known, as `map_saver` writes it, is this probability and a little; newer
-/// versions of it write a `free_thresh` above.
+/// Lower limit of the probability that `map_saver`'s grey for unknown cells means; newer versions write a `free_thresh`
+/// above it.
 const UNKNOWN: f64 = 0.196;
 
 /// Occupied and free cells of a square grid, and where the grid lies.
@@ -18,7 +18,7 @@ const UNKNOWN: f64 = 0.196;
 pub struct OccupancyGrid {
     width: usize,
     height: usize,
-    /// Row by row, the lowest first.
+    /// Occupied cells, row by row, the lowest first.
     occupied: Vec<bool>,
     /// Cells that are known to be free.
     free: Vec<bool>,
@@ -29,8 +29,7 @@ pub struct OccupancyGrid {
 
 impl OccupancyGrid {
     /// Reads a map as the ROS `map_server` saves it: a YAML file that names a picture beside it. A cell is occupied if
-    /// it is with a probability above `occupied_thresh`, and free if it is with one below `free_thresh`; one of which
-    /// nothing is known is neither.
+    /// its probability is above `occupied_thresh`, free if it is below `free_thresh`, and otherwise neither.
     ///
     /// The keys are `image` (a PGM), `resolution` (metres per pixel), `origin` (x, y in metres and yaw in radians of
     /// the lower left corner), and if need be `negate`, `occupied_thresh`, `free_thresh` and `mode` (`trinary` or
@@ -110,9 +109,8 @@ impl OccupancyGrid {
         [x + cos * along - sin * aside, y + sin * along + cos * aside]
     }
 
-    /// The tolerance to take unless there is a reason for another, in metres: one and a half cells. The corners of the
-    /// stair that a straight wall becomes in cells lie in a strip `sqrt(2)` cells wide at most, so that this makes it
-    /// straight again.
+    /// The recommended tolerance in metres: one and a half cells. A straight wall becomes a stair whose corners lie in
+    /// a strip at most `sqrt(2)` cells wide, so this makes it straight again.
     pub fn default_tolerance_m(&self) -> f64 {
         1.5 * self.cell_m
     }

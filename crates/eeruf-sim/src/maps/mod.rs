@@ -1,5 +1,5 @@
-//! Maps that people have: an occupancy grid, as the ROS `map_server` saves it (a picture in PGM and a YAML file beside
-//! it), becomes walls. It uses `scene`; nothing but callers uses it.
+//! Conversion of maps to walls: occupancy grids as the ROS `map_server` saves them (a picture in PGM and a YAML file
+//! beside it). It uses `scene`.
 
 mod contours;
 mod grid;

@@ -1,4 +1,4 @@
-//! Fewer corners: the line of Douglas and Peucker, and where lines would then cross, more corners again.
+//! Simplification of outlines by Douglas and Peucker; where lines would cross, corners are added again.
 //!
 //! D. Douglas and T. Peucker, "Algorithms for the reduction of the number of points required to represent a digitized
 //! line or its caricature", The Canadian Cartographer 10(2), 1973.
@@ -7,8 +7,8 @@ use std::collections::BTreeSet;
 
 use super::contours::Corner;
 
-/// Closed lines through some of the corners: no corner that is left out is farther than `tolerance` from the line that
-/// passes it, no line farther from the outline, and no two lines have more in common than an end. Lengths are in cells.
+/// Closed lines through some of the corners: every omitted corner is within `tolerance` of its line and every line
+/// within it of the outline, and two lines share at most an end. Lengths are in cells.
 pub(super) fn simplified(outlines: &[Vec<Corner>], tolerance: f64) -> Vec<Vec<Corner>> {
     let mut kept: Vec<Kept> = outlines.iter().map(|corners| Kept::new(corners, tolerance)).collect();
     loop {
@@ -50,7 +50,7 @@ impl<'a> Kept<'a> {
         kept
     }
 
-    /// Keeps more corners of the lines that begin at these, until what they pass is near enough.
+    /// Keeps more corners of the lines that begin at these, until all omitted corners are near enough.
     fn refine_until_near(&mut self, mut open: Vec<usize>) {
         while let Some(first) = open.pop() {
             if let Some((corner, off)) = self.farthest(first)
@@ -62,7 +62,7 @@ impl<'a> Kept<'a> {
         }
     }
 
-    /// The place of the corner that the line ends at that begins here; beyond the last one it is the first's again.
+    /// The place of the corner at which the line ends that begins here; after the last one it is the first's again.
     fn end(&self, first: usize) -> usize {
         self.corners.range(first + 1..).next().copied().unwrap_or(self.of.len())
     }
@@ -71,7 +71,7 @@ impl<'a> Kept<'a> {
         self.of[place % self.of.len()]
     }
 
-    /// The corner farthest from the line that passes it, and how far that is; none if the line passes none.
+    /// The corner farthest from the line that omits it, and its distance; `None` if the line omits none.
     fn farthest(&self, first: usize) -> Option<(usize, f64)> {
         let end = self.end(first);
         let (from, to) = (self.at(first), self.at(end));
@@ -79,8 +79,7 @@ impl<'a> Kept<'a> {
         passed.map(|corner| (corner, off(self.at(corner), from, to))).max_by(|(_, a), (_, b)| a.total_cmp(b))
     }
 
-    /// Keeps one corner more of the line that begins here, and then what else the two lines need; `false` if it passes
-    /// none.
+    /// Adds one corner to the line that begins here, and more to the two new lines as needed; `false` if it omits none.
     fn refine(&mut self, first: usize) -> bool {
         let Some((corner, _)) = self.farthest(first) else { return false };
         self.corners.insert(corner);
@@ -109,7 +108,7 @@ pub(super) fn off(corner: Corner, from: Corner, to: Corner) -> f64 {
     libm::hypot(x - share * dx, y - share * dy)
 }
 
-/// Lines that have more in common with another than an end.
+/// Lines that share more than an end with another line.
 fn crossing(lines: &[Line]) -> BTreeSet<usize> {
     let span = |line: &Line, axis: usize| {
         let [a, b] = line.ends;
@@ -134,7 +133,7 @@ fn crossing(lines: &[Line]) -> BTreeSet<usize> {
     found
 }
 
-/// Returns true if two lines have more in common than an end of both. Exact, as corners are whole numbers.
+/// Returns true if two lines share more than an end. Exact, since corners are whole numbers.
 fn meet([a, b]: [Corner; 2], [c, d]: [Corner; 2]) -> bool {
     let side = |from: Corner, to: Corner, of: Corner| {
         ((to[0] - from[0]) * (of[1] - from[1]) - (to[1] - from[1]) * (of[0] - from[0])).signum()

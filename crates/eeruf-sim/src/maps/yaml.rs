@@ -15,13 +15,13 @@ pub(super) struct Head {
     pub(super) origin: [f64; 3],
     /// True if white is occupied, not black.
     pub(super) negate: bool,
-    /// A cell that is occupied with a higher probability is.
+    /// Probability above which a cell is occupied.
     pub(super) occupied_thresh: f64,
-    /// A cell that is occupied with a lower probability is free.
+    /// Probability below which a cell is free.
     pub(super) free_thresh: f64,
 }
 
-/// Reads the file. What only other programs need is left alone.
+/// Reads the file. Keys for other programs are ignored.
 pub(super) fn read(text: &str) -> Result<Head, String> {
     let documents = Yaml::load_from_str(text).map_err(|error| error.to_string())?;
     let Some(file) = documents.first().filter(|file| file.is_mapping()) else {

@@ -1,4 +1,4 @@
-//! Rings that move along a ladder of scaled schedules as the rejection rate asks for (end of Sec. 3.1).
+//! Rings that move along a ladder of scaled schedules with the rejection rate (end of Sec. 3.1).
 
 use std::sync::Arc;
 
@@ -49,7 +49,7 @@ impl<const E: usize> RingRunner for AdaptiveRing<E> {
     }
 }
 
-/// Rungs of the adaptive method's ladder, times the schedule it starts from.
+/// Rungs of the adaptive method's ladder, as multiples of the first schedule.
 const RUNGS: [(u32, u32); 4] = [(5, 6), (1, 1), (4, 3), (5, 3)];
 
 /// The rungs of a robot's ladder, from the schedule that it starts from.

@@ -1,4 +1,4 @@
-//! The best schedule for a robot's ring: the shortest period that guarantees what the robot's own schedule does.
+//! The best schedule for a robot's ring: the shortest period that guarantees as much as the robot's own schedule.
 
 use eeruf_core::search::{Progress, SearchError};
 use eeruf_core::{Layout, Micros, Requirements};
@@ -12,8 +12,8 @@ use crate::world::Robot;
 /// 5.6).
 pub const TICK: Micros = Micros::new(100);
 
-/// Requirements that a ring must keep of the schedule it fires by: the robot's `t_delta` and window, the interval that
-/// its schedule (or the paper's table at its period) keeps between neighbours, and that a sensor's own stale echoes are
+/// Requirements that any schedule of a robot's ring must keep: the robot's `t_delta` and window, the interval that its
+/// schedule (or the paper's table at its period) keeps between neighbours, and that a sensor's own stale echoes are
 /// rejected.
 pub fn requirements_of(robot: &Robot) -> Requirements<'static> {
     let own = robot.schedule.or_else(|| table_i_d_for(robot.sensors.len(), robot.period, robot.neighbours).ok());
@@ -29,7 +29,7 @@ pub fn requirements_of(robot: &Robot) -> Requirements<'static> {
 }
 
 /// Searches `budget` nodes for the schedule with the shortest period that meets [`requirements_of`] a robot.
-/// `keep_going` is asked now and then, and may end the search.
+/// `keep_going` is called sometimes, and may end the search.
 ///
 /// # Errors
 /// [`SearchError`] if the ring is too large to search.
@@ -41,7 +41,7 @@ pub fn shortest_schedule_for(
     problem_of(robot).shortest(budget, &mut control(keep_going))
 }
 
-/// Like [`shortest_schedule_for`], and of all schedules of that period the one to prefer, if the period is proven.
+/// The schedule of [`shortest_schedule_for`]; if its period is proven, the preferred one of that period.
 ///
 /// # Errors
 /// [`SearchError`] if the ring is too large to search.
@@ -73,7 +73,7 @@ fn control(mut keep_going: impl FnMut(&Progress) -> bool) -> impl FnMut(&Progres
     move |progress| if keep_going(progress) { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
 }
 
-/// A ring if the sensors go all the way round, or else a line.
+/// A ring if the sensors go all the way round, otherwise a line.
 fn layout_of(robot: &Robot) -> Layout<'static> {
     let turn = |from: usize, to: usize| match (robot.sensors.get(from), robot.sensors.get(to)) {
         (Some(from), Some(to)) => (from.rotation.inverse() * to.rotation).angle().abs(),

@@ -24,7 +24,7 @@ fn dithered(start: &RingStart<'_>) -> Started {
 struct Dither {
     lags: Vec<Micros>,
     period: Micros,
-    /// Largest wait: with it each firing stays within the period.
+    /// Largest wait, with which each firing stays within the period.
     widest: Micros,
     random: Random,
 }

@@ -1,5 +1,5 @@
-//! [`FiringMethod`]: when the sensors of a ring fire, planned period by period by a method or the caller's code; and
-//! the plan that makes core's ring of it.
+//! [`FiringMethod`]: firings of a ring, planned period by period by a method or by the caller's code; and the plan
+//! through which core's ring fires them.
 
 use core::fmt;
 
@@ -25,15 +25,14 @@ use eeruf_core::{
 /// assert_eq!(BackAndForth.plan(1).unwrap().firings[7], (Micros::ZERO, 7));
 /// ```
 pub trait FiringMethod: Send {
-    /// Plans a period of the ring: they are counted from 0, and each begins when the one before has ended.
+    /// Plans a period of the ring. Periods are counted from 0, and each begins when the one before has ended.
     ///
     /// # Errors
-    /// Whatever ends the simulation, with
-    /// [`SimulationError::Own`](crate::SimulationError::Own).
+    /// An error ends the simulation, with [`SimulationError::Own`](crate::SimulationError::Own).
     fn plan(&mut self, period: u32) -> Result<FiringPeriod, OwnError>;
 
-    /// Returns one that goes on as this does; none, as by default, if it cannot be copied. A simulation can be
-    /// [copied](crate::Simulation::copy) if all that its robots fire by can.
+    /// Returns a copy that continues in the same way; `None`, the default, if it cannot be copied. A simulation can be
+    /// [copied](crate::Simulation::copy) if all of its robots' firing methods can.
     fn copy(&self) -> Option<Box<dyn FiringMethod>> {
         None
     }
@@ -49,7 +48,7 @@ impl<F: FiringMethod + ?Sized> FiringMethod for Box<F> {
     }
 }
 
-/// A firing, or why there is no more.
+/// A firing method, or the reason why it has ended.
 struct Planner(Result<Box<dyn FiringMethod>, OwnError>);
 
 impl Clone for Planner {
@@ -64,9 +63,9 @@ impl Clone for Planner {
 /// One period of a [`FiringMethod`].
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct FiringPeriod {
-    /// Length: 1 us to [`MAX_PERIOD`].
+    /// Length of the period: 1 us to [`MAX_PERIOD`].
     pub length: Micros,
-    /// The phase, which its readings carry: 0 to 7.
+    /// Phase of the period, which its readings carry: 0 to 7.
     pub phase: Phase,
     /// Firings, each with its time after the beginning of the period and before its end, in any order. A sensor may
     /// fire several times or not at all, but never while it still listens: within the robot's
@@ -123,7 +122,7 @@ enum Unfit {
     Listens { sensor: u8, at: Micros, after_us: u64, refire: Micros },
 }
 
-/// Sensors are counted from 0, as where they were planned.
+/// Text of the error; sensors are counted from 0, as in the plan.
 impl fmt::Display for Unfit {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -144,25 +143,25 @@ impl fmt::Display for Unfit {
     }
 }
 
-/// Fires as a [`FiringMethod`] plans: core's contract for it.
+/// A plan of core that fires the periods of a [`FiringMethod`].
 #[derive(Clone)]
 pub(crate) struct PeriodFiring {
     planner: Planner,
     sensors: usize,
-    /// No sensor fires again within this time of firing.
+    /// Least time between two firings of a sensor.
     refire: Micros,
     /// The number of the next period to be planned.
     period: u32,
-    /// Firing times of the present one, in order.
+    /// Firing times of the present period, in order.
     due: Vec<(Micros, u8)>,
     length: Micros,
     phase: Phase,
     /// The phase of each sensor's last firing.
     fired_in: [Phase; MAX_SENSORS],
-    /// The next of them.
+    /// The next of these firings.
     next: usize,
     start: Instant,
-    /// Time since each sensor fired when the present period begins, as planned; none for long ago.
+    /// Time since each sensor fired, when the present period begins as planned; a long time for those that have not.
     before_us: Vec<Option<u64>>,
     enabled: [bool; MAX_SENSORS],
     paused: bool,
@@ -170,8 +169,8 @@ pub(crate) struct PeriodFiring {
 }
 
 impl PeriodFiring {
-    /// A ring of this many sensors, none of which fires again within `refire` of firing. What is wrong with the first
-    /// period, [`error`](Self::error) says.
+    /// A plan for this many sensors, none of which fires again within `refire`. If the first period is invalid,
+    /// [`error`](Self::error) gives the reason.
     pub(crate) fn new(firing: Box<dyn FiringMethod>, sensors: usize, refire: Micros, now: Instant) -> Self {
         let mut firing = Self {
             planner: Planner(Ok(firing)),
@@ -198,7 +197,7 @@ impl PeriodFiring {
         self.planner.0.as_ref().err()
     }
 
-    /// True if a clone fires as it does.
+    /// Returns true if a clone fires in the same way.
     pub(crate) fn copies(&self) -> bool {
         self.planner.clone().0.is_ok()
     }
@@ -225,7 +224,7 @@ impl PeriodFiring {
         self.skip_disabled();
     }
 
-    /// Takes over a planned period, if it can be fired.
+    /// Starts a planned period, if it can be fired.
     fn take(&mut self, period: FiringPeriod) -> Result<(), Unfit> {
         let FiringPeriod { length, phase, mut firings } = period;
         if length == Micros::ZERO || length > MAX_PERIOD {

@@ -1,4 +1,4 @@
-//! A ring that fires by flow: core's own, for a robot.
+//! A robot's ring that fires by flow: core's own.
 
 use eeruf_core::{
     MAX_SENSORS, Micros,
@@ -10,28 +10,28 @@ use super::ring_runner::{RingStart, Started, Way, config_of, trusting};
 use super::schedules;
 use crate::world::Robot;
 
-/// Settings of a flow ring by which it differs from what its robot asks for.
+/// Settings of a flow ring that differ from its robot's.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct FlowOptions {
-    /// Time for which sensors listen, in an [`Entry`](crate::Entry); `None` for the robot's window.
+    /// Listening time of the sensors, in an [`Entry`](crate::Entry); `None` for the robot's window.
     pub window: Option<Micros>,
-    /// R: how long sound is heard, its tail included, and the most quiet; `None` for the robot's
-    /// [`audible`](Robot::audible), or what follows from its window.
+    /// R: the time for which sound is heard, its tail included, and the greatest quiet; `None` for the robot's
+    /// [`audible`](Robot::audible), or a value derived from its window.
     pub most: Option<Micros>,
     /// The least quiet; `None` for 2/11 of R.
     pub least: Option<Micros>,
-    /// The least time between two firings of a sensor; `None` for what its module needs, its window, and R.
+    /// The least time between two firings of a sensor; `None` for the longest of its module's rest, its window, and R.
     pub rest: Option<Micros>,
     /// Random time in every gap; `None` for 2 ms.
     pub dice: Option<Micros>,
-    /// Settings of belief; `None` for [`BeliefSettings::DEFAULT`]. Whether the robot is alone follows from the world,
-    /// and from what it [expects](Robot::others).
+    /// Settings of belief; `None` for [`BeliefSettings::DEFAULT`]. The world and the robot's
+    /// [expectation](Robot::others) decide if it is alone.
     pub belief: Option<BeliefSettings>,
 }
 
 impl FlowOptions {
-    /// The gaps of a robot's ring, with a seed of its own.
+    /// The gaps of a robot's ring, with its own seed.
     fn turns(&self, robot: &Robot, seed: u32) -> TurnSettings {
         let &Robot { window, audible, blanking, .. } = robot;
         // A sensor that fires while its last sound is heard would take old echoes for new ones.

@@ -1,4 +1,4 @@
-//! The judges of simulated rings: core's own, and what a robot's sketch takes for one.
+//! The judges of simulated rings: core's own, and those of the robot's sketch.
 
 use eeruf_core::{
     EchoFilter, Micros, ReadingKind, RingConfig, RingError,
@@ -8,7 +8,7 @@ use eeruf_core::{
 
 use crate::world::Robot;
 
-/// The most readings that a median is taken of.
+/// Largest number of readings for a median.
 pub(crate) const MAX_MEDIAN: usize = 15;
 
 /// A judge of a method's readings.
@@ -16,28 +16,28 @@ pub(crate) const MAX_MEDIAN: usize = 15;
 pub(crate) enum JudgeKind {
     /// Every echo is accepted.
     EveryEcho,
-    /// Readings that agree with one of the sensor's two readings before.
+    /// Two of three votes: an echo is accepted if it agrees with one of the sensor's two readings before.
     TwoOfThree,
-    /// The median of the last few.
+    /// The median of the last few readings.
     Median,
-    /// Consecutive readings that agree.
+    /// Consecutive readings are accepted if they agree.
     Agreement,
-    /// Consecutive readings that agree and that nothing foreign explains.
+    /// Consecutive readings are accepted if they agree and nothing foreign explains them.
     Unexplained,
-    /// Accepts what fits the belief of a flow ring, or agrees and is not explained.
+    /// Readings are accepted if they fit the belief of a flow ring, or agree and nothing foreign explains them.
     Belief,
-    /// Every echo, or consecutive readings that agree: as the robot's sketch says.
+    /// Every echo, or consecutive readings that agree: according to the robot's sketch.
     AsSketched,
 }
 
 impl JudgeKind {
-    /// Returns true if it asks what explains a reading.
+    /// Returns true if the judge checks explanations.
     pub(super) const fn asks(self) -> bool {
         matches!(self, Self::Unexplained | Self::Belief)
     }
 
-    /// The judge of a robot, which may fire by another method than the one that is `asked` for: that one's, unless it
-    /// compares consecutive readings as this one does, or is only what a filter of the caller's own is told.
+    /// The judge of a robot that may fire by another method than the one `asked` for. It is that method's, unless both
+    /// compare consecutive readings, or the caller's own filter replaces it.
     pub(crate) fn of_robot(self, asked: Self, robot: &Robot, has_filter: bool) -> Self {
         match asked {
             Self::AsSketched if robot.firing.consecutive == 1 && !has_filter => Self::EveryEcho,
@@ -48,7 +48,7 @@ impl JudgeKind {
     }
 }
 
-/// A judge, and what it is set up with.
+/// A judge, and its settings.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Judging {
     pub(crate) kind: JudgeKind,
@@ -60,7 +60,7 @@ pub(crate) struct Judging {
     pub(crate) echoes: usize,
 }
 
-/// A judge under way, for all but flow rings.
+/// A running judge, for all rings except flow rings.
 #[derive(Clone)]
 pub(super) enum RunningJudge<const K: usize, const E: usize> {
     Compares(EchoFilter<K, E>),
@@ -84,7 +84,7 @@ impl<const K: usize, const E: usize> RunningJudge<K, E> {
     }
 }
 
-/// Asks whichever it is.
+/// Calls the judge, whichever it is.
 macro_rules! each {
     ($running:ident, $judge:ident => $answer:expr) => {
         match $running {

@@ -1,5 +1,4 @@
-//! A row of the table of firing methods: a description, a name, its firing, its judge, the number of echoes,
-//! and whether it adapts.
+//! A row of the table of firing methods: description, name, firing, judge, number of echoes, and adaptation.
 
 use core::fmt;
 use core::str::FromStr;
@@ -16,12 +15,12 @@ use crate::world::{AnySchedule, Robot};
 /// The most echoes that a sensor reports of one firing.
 pub(crate) const MAX_ECHOES: usize = 8;
 
-/// A method: its firing, its judge, the number of echoes of a firing that a sensor reports, and whether it adapts.
+/// A firing method: its firing, its judge, the number of echoes that a sensor reports, and its adaptation.
 pub(super) struct MethodRow {
     pub(super) name: &'static str,
-    /// The description, as the enum documents it.
+    /// The description, from the enum's documentation.
     pub(super) about: &'static str,
-    /// True if it is simulated only where it is asked for.
+    /// True if it is simulated only on request.
     pub(super) on_demand: bool,
     pub(super) firing: Way,
     pub(super) judge: JudgeKind,
@@ -30,8 +29,8 @@ pub(super) struct MethodRow {
     pub(super) adapts: bool,
 }
 
-/// Defaults of a row: the robot's own schedule, and one echo, which is believed if nothing foreign explains it and the
-/// one before.
+/// Defaults of a row: the robot's own schedule, one echo, and acceptance if nothing foreign explains it and the one
+/// before.
 pub(super) const DEFAULT: MethodRow = MethodRow {
     name: "",
     about: "",
@@ -42,7 +41,7 @@ pub(super) const DEFAULT: MethodRow = MethodRow {
     adapts: false,
 };
 
-/// Makes the enum, its list and its rows from the table, and the modules of ways in files of their own.
+/// Makes the enum, its list and its rows from the table, and the modules of ways that have files of their own.
 macro_rules! methods {
     ($(
         $(#[doc = $about:literal])+
@@ -50,10 +49,10 @@ macro_rules! methods {
     )+) => {
         $( $( mod $file; )? )+
 
-        /// A way to fire a ring and to decide what to believe.
+        /// A way to fire a ring and to judge its readings.
         ///
-        /// The first six and [`Median`](Self::Median) come from practice, the others are the paper's and what follows
-        /// from it.
+        /// The first six and [`Median`](Self::Median) come from practice, the others are the paper's and its
+        /// extensions.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         #[non_exhaustive]
         pub enum Method {
@@ -98,24 +97,22 @@ impl Method {
         shown.replace("[`", "").replace('`', "").trim_end_matches('.').to_owned()
     }
 
-    /// Returns true if it is the paper's method or follows from it: waits alternate, and consecutive readings are
-    /// compared.
+    /// Returns true for the paper's method and its extensions: alternating waits, with consecutive readings compared.
     pub const fn is_eeruf(self) -> bool {
         self.row().judge.asks()
     }
 
-    /// Returns true if it fires as sketches and modules do today, by a robot's [`Sketch`](crate::Sketch).
+    /// Returns true if it fires like today's sketches and modules, by a robot's [`Sketch`](crate::Sketch).
     pub const fn is_sketch(self) -> bool {
         matches!(self.row().judge, AsSketched)
     }
 
-    /// The methods that are compared where nothing says how a ring is fired today: all that are no sketch, and no
-    /// [on demand](Self::is_on_demand).
+    /// The methods compared by default: all except sketches and those [on demand](Self::is_on_demand).
     pub fn usual() -> impl Iterator<Item = Self> {
         Self::ALL.into_iter().filter(|method| !method.is_sketch() && !method.is_on_demand())
     }
 
-    /// Returns true if it is simulated only where it is asked for by name: two methods in one.
+    /// Returns true if it is simulated only when requested by name, since it combines two methods.
     pub const fn is_on_demand(self) -> bool {
         self.row().on_demand
     }
@@ -130,17 +127,17 @@ impl Method {
         self.row().echoes
     }
 
-    /// Least time until a sensor may fire again, as long as its ring keeps to this schedule.
+    /// Least time until a sensor may fire again, as long as its ring keeps this schedule.
     pub(crate) fn soonest_refire(self, robot: &Robot, schedule: &AnySchedule, sensor: usize) -> Micros {
         if self.row().adapts { robot.window } else { (self.row().firing.refire)(robot, schedule, sensor) }
     }
 
-    /// The schedule that a robot's ring starts with.
+    /// The schedule with which a robot's ring starts.
     pub(crate) fn schedule(self, robot: &Robot, best: Option<&AnySchedule>) -> Result<AnySchedule, ScheduleError> {
         (self.row().firing.schedule)(robot, best)
     }
 
-    /// The plan of a robot's ring, from the schedule that it starts with.
+    /// The plan of a robot's ring, from its first schedule.
     pub(crate) fn plan(self, robot: &Robot, schedule: AnySchedule) -> Result<FiringPlan, StartError> {
         if self.row().adapts { adaptive::plan(robot, schedule) } else { (self.row().firing.plan)(robot, schedule) }
     }
@@ -186,11 +183,11 @@ impl FromStr for Method {
     }
 }
 
-/// A name that no method has.
+/// A name that is no method's.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownMethod(pub String);
 
-/// Names that methods had.
+/// Names of removed methods.
 const GONE: [&str; 4] = ["eeruf_hopping", "driving", "adaptive_hopping", "hopping_multi_echo"];
 
 impl fmt::Display for UnknownMethod {

@@ -32,7 +32,7 @@ use ring_runner::Way;
 methods! {
     /// All sensors at once, once a period. Every echo is believed.
     Simultaneous = "simultaneous" { firing: Way::by_table(schedules::together), judge: EveryEcho, }
-    /// One by one, each listening for the whole window before the next one fires. Every echo is believed.
+    /// One by one, each sensor listening for the whole window before the next one fires. Every echo is believed.
     Sequential = "sequential" { firing: Way::by_table(schedules::one_by_one), judge: EveryEcho, }
     /// As sequential, but an echo is believed if one of the sensor's two readings before agrees with it: two of three
     /// votes.

@@ -1,5 +1,5 @@
-//! Core's own [`Ring`] of whatever plan, judge and number of echoes behind one trait: the same code as on the target,
-//! under simulated time. It owns what it fires by, so that it can be copied.
+//! Core's own [`Ring`], with any plan, judge and number of echoes, behind one trait: the same code as on the target,
+//! under simulated time. It owns its schedule, so that it can be copied.
 
 use std::sync::Arc;
 
@@ -22,17 +22,17 @@ use crate::world::{AnySchedule, Random, Robot};
 
 /// A ring of any kind.
 pub(crate) trait RingRunner: Send {
-    /// The ring's next event, if any; `expected_change_us` says by how much a good reading of a sensor should change.
+    /// The ring's next event, if any; `expected_change_us` gives the expected change of a sensor's good reading.
     fn poll(&mut self, now: Instant, expected_change_us: &dyn Fn(u8) -> i32) -> Option<RingEvent>;
-    /// Returns the time when it is to be polled again.
+    /// Returns the time of the next poll.
     fn next_deadline(&self) -> Instant;
-    /// A sensor hears an echo.
+    /// Reports a sensor's echo.
     fn echo(&mut self, sensor: u8, at: Instant);
-    /// Number of firings of a sensor since the one whose echo its last reading says.
+    /// Number of firings since the one whose echo a sensor's last reading reports.
     fn stands_for(&self, sensor: u8) -> u8;
-    /// The robot moves at this speed, and turns at this rate.
+    /// Reports the robot's speed and rate of turn.
     fn moving(&mut self, _speed_mm_s: u32, _turn_mrad_s: u32, _now: Instant) {}
-    /// Changes to another schedule, of as many sensors, when the present period ends.
+    /// Changes to another schedule with as many sensors when the present period ends.
     fn change_schedule(&mut self, _schedule: &AnySchedule) -> Result<(), ChangeError> {
         Err(ChangeError::Fixed)
     }
@@ -40,20 +40,20 @@ pub(crate) trait RingRunner: Send {
     fn error(&self) -> Option<&OwnError> {
         None
     }
-    /// A ring in the same state, unless it fires by what cannot be copied.
+    /// A ring in the same state; `None` if its firing method cannot be copied.
     fn copy(&self) -> Option<Box<dyn RingRunner>>;
 }
 
 /// Reason why a ring cannot change to another schedule.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum ChangeError {
-    /// The ring fires by no schedule that could be changed.
+    /// The ring's firing method has no schedule that could change.
     Fixed,
-    /// The ring cannot listen as asked.
+    /// The ring cannot listen as requested.
     Ring(RingError),
 }
 
-/// Demands of the simulator on a plan beyond those of a ring.
+/// Operations of a plan that the simulator needs beyond those of a ring.
 pub(super) trait SimulatedPlan: Plan + Clone + Send + 'static {
     /// Changes a ring to another schedule.
     fn change<J: Judge, const K: usize, const E: usize, const H: usize>(
@@ -66,7 +66,7 @@ pub(super) trait SimulatedPlan: Plan + Clone + Send + 'static {
     fn error(&self) -> Option<&OwnError> {
         None
     }
-    /// True if a clone fires as it does.
+    /// Returns true if a clone fires in the same way.
     fn copies(&self) -> bool {
         true
     }
@@ -134,27 +134,27 @@ where
     }
 }
 
-/// Firing by a table, whether sensors are alike or not.
+/// Firing by a table, for sensors that are alike or not.
 pub(super) type SimulatedTable = TableFiring<Arc<AnySchedule>, MAX_SENSORS, 2, EachSensor<MAX_SENSORS>>;
 
 /// The plan of a robot's ring.
 pub(crate) struct FiringPlan {
-    /// The schedule that the method asked for.
+    /// The schedule that the method uses.
     pub(crate) schedule: AnySchedule,
-    /// If it adapts, the schedules that it may change to, the first one first.
+    /// The schedules to which an adaptive ring may change, the first one first.
     pub(crate) ladder: Vec<VerifiedSchedule<MAX_SENSORS, 2, EachSensor<MAX_SENSORS>>>,
-    /// Limits of each sensor, where they are not all alike.
+    /// Limits of each sensor, if they are not all alike.
     pub(crate) own_limits: EachSensor<MAX_SENSORS>,
 }
 
 impl FiringPlan {
-    /// One schedule for sensors that are alike.
+    /// A plan with one schedule, for sensors that are alike.
     pub(crate) const fn new(schedule: AnySchedule) -> Self {
         Self { schedule, ladder: vec![], own_limits: EachSensor::NONE }
     }
 }
 
-/// Settings that a ring is started with.
+/// Settings for starting a ring.
 pub(crate) struct RingStart<'s> {
     pub(crate) robot: &'s Robot,
     pub(crate) plan: &'s FiringPlan,
@@ -168,13 +168,13 @@ pub(crate) struct RingStart<'s> {
 /// A way of firing.
 #[derive(Clone, Copy)]
 pub(super) struct Way {
-    /// The schedule that a robot's ring starts with; for dither the lags alone.
+    /// The schedule with which a robot's ring starts; for dither the lags alone.
     pub(super) schedule: fn(&Robot, Option<&AnySchedule>) -> Result<AnySchedule, ScheduleError>,
     /// The ring's plan, from that schedule.
     pub(super) plan: fn(&Robot, AnySchedule) -> Result<FiringPlan, StartError>,
     /// The ring, ready to run.
     pub(super) ring: fn(&RingStart<'_>) -> Started,
-    /// Least time until a sensor, by its number, may fire again.
+    /// Least time between two firings of a sensor, given by its number.
     pub(super) refire: fn(&Robot, &AnySchedule, usize) -> Micros,
 }
 
@@ -185,7 +185,7 @@ impl Way {
     pub(super) const IMMEDIATE: Self =
         Self { ring: immediate, refire: |robot, _, _| robot.min_refire, ..Self::by_table(schedules::refiring) };
 
-    /// One schedule, no firing sooner than that has it.
+    /// A way with one schedule, whose least refire time is the schedule's.
     pub(super) const fn by_table(
         schedule: fn(&Robot, Option<&AnySchedule>) -> Result<AnySchedule, ScheduleError>,
     ) -> Self {
@@ -201,9 +201,9 @@ impl Way {
 /// Reason why a ring cannot be started.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum StartError {
-    /// The ring cannot listen as asked.
+    /// The ring cannot listen as requested.
     Ring(RingError),
-    /// No schedule of its ladder keeps `t_delta` and window.
+    /// No schedule of the ladder keeps `t_delta` and window.
     Unverified(Violation),
     /// The schedules make no ladder.
     Ladder(ScheduleError),
@@ -217,10 +217,10 @@ impl From<RingError> for StartError {
     }
 }
 
-/// A running ring, if it can be started.
+/// A running ring, or the error that prevented it.
 pub(crate) type Started = Result<Box<dyn RingRunner>, StartError>;
 
-/// Settings by which a robot's ring listens and compares.
+/// Settings of a robot's ring for listening and comparing.
 pub(super) fn config_of(robot: &Robot) -> RingConfig {
     let &Robot { t_delta, window, blanking, consecutive, .. } = robot;
     let mut listens = RingConfig::new().with_t_delta(t_delta).with_window(window).with_blanking(blanking);
@@ -228,12 +228,12 @@ pub(super) fn config_of(robot: &Robot) -> RingConfig {
     listens.with_consecutive(consecutive)
 }
 
-/// The firings of each sensor that are remembered for whoever asks.
+/// Number of remembered firings of each sensor, for judges that check explanations.
 pub(super) const REMEMBERED: usize = 4;
-/// The memory of immediate refiring, in which a sensor may fire many times while another listens once.
+/// Number of remembered firings with immediate refiring, where a sensor may fire many times while another listens once.
 const REFIRED: usize = 16;
 
-/// A simulated sensor that hears nothing has listened.
+/// A configuration in which silence counts as witnessed: a simulated sensor that hears nothing has listened.
 pub(super) fn trusting<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize>(
     mut ring: Ring<P, J, K, E, H>,
 ) -> Ring<P, J, K, E, H> {
@@ -241,8 +241,8 @@ pub(super) fn trusting<P: Plan, J: Judge, const K: usize, const E: usize, const 
     ring
 }
 
-/// A robot's ring by this plan that remembers `H` firings of each sensor, no larger than needed: some of its steps take
-/// time for each sensor that it has room for.
+/// A robot's ring with this plan that remembers `H` firings of each sensor. It is no larger than needed, since some
+/// steps take time for each sensor that fits.
 pub(super) fn run<P: SimulatedPlan, const H: usize>(
     plan: P,
     robot: &Robot,
@@ -269,7 +269,7 @@ pub(super) fn ring<P: Plan, const K: usize, const E: usize, const H: usize>(
     Ok(trusting(Ring::judged_by(plan, judge, config.with_echoes(), now)?))
 }
 
-/// Scheduled firing, along a ladder where there is one.
+/// Scheduled firing, along a ladder if there is one.
 fn scheduled(start: &RingStart<'_>) -> Started {
     let &RingStart { robot, plan, ref judging, now, .. } = start;
     match judging.echoes {
@@ -282,7 +282,7 @@ fn scheduled(start: &RingStart<'_>) -> Started {
     }
 }
 
-/// The robot's own schedule, where sensors are not all alike with what each may do.
+/// The robot's own schedule, with the limits of each sensor if they are not all alike.
 fn plan_own(robot: &Robot, schedule: AnySchedule) -> Result<FiringPlan, StartError> {
     if !robot.is_uneven() {
         return Ok(FiringPlan::new(schedule));
@@ -297,7 +297,7 @@ fn immediate(start: &RingStart<'_>) -> Started {
     run::<_, REFIRED>(Refiring::new(Arc::new(plan.schedule), robot.min_refire, now), robot, judging, now)
 }
 
-/// A robot's ring that fires as it is planned, no sensor again within `refire` of firing.
+/// A robot's ring that fires as planned, with at least `refire` between two firings of a sensor.
 pub(crate) fn planned(
     firing: Box<dyn FiringMethod>,
     robot: &Robot,

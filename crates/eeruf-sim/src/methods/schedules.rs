@@ -1,20 +1,20 @@
-//! The schedules that methods fire by, made for a robot's ring.
+//! The schedules of the firing methods, made for a robot's ring.
 
 use eeruf_core::{Micros, Phase, ScheduleError};
 
 use crate::world::{AnySchedule, Robot};
 
-/// All sensors at once.
+/// A schedule that fires all sensors at once.
 pub(super) fn together(robot: &Robot, _: Option<&AnySchedule>) -> Result<AnySchedule, ScheduleError> {
     constant(robot.period, &vec![Micros::ZERO; robot.sensors.len()])
 }
 
-/// One sensor after the other, each when the one before is heard no more.
+/// A schedule that fires one sensor after the other, each when the one before is no longer heard.
 pub(super) fn one_by_one(robot: &Robot, _: Option<&AnySchedule>) -> Result<AnySchedule, ScheduleError> {
     in_turns(robot, robot.sensors.len())
 }
 
-/// Sensors far apart together, group after group.
+/// A schedule that fires sensors far apart together, group after group.
 pub(super) fn far_groups(robot: &Robot, _: Option<&AnySchedule>) -> Result<AnySchedule, ScheduleError> {
     in_turns(robot, robot.sensors.len().min(usize::from(robot.neighbours)))
 }
@@ -31,7 +31,7 @@ pub(super) fn own(robot: &Robot, _: Option<&AnySchedule>) -> Result<AnySchedule,
     schedule.map_or_else(|| table_i_d_for(sensors.len(), period, neighbours), Ok)
 }
 
-/// The best schedule that is known, if it is for as many sensors.
+/// The best schedule that is known, if it has as many sensors.
 pub(super) fn best(robot: &Robot, best: Option<&AnySchedule>) -> Result<AnySchedule, ScheduleError> {
     match best {
         Some(best) if best.sensors() == robot.sensors.len() => Ok(*best),
@@ -39,9 +39,8 @@ pub(super) fn best(robot: &Robot, best: Option<&AnySchedule>) -> Result<AnySched
     }
 }
 
-/// The paper's waits for immediate refiring, each longer by the shortest refire time. Holding a sensor back until that
-/// time has passed would do as well for the transducer, but wherever it does so every wait is as good as any other, and
-/// nothing alternates.
+/// The paper's waits for immediate refiring, each longer by the shortest refire time. Merely delaying a sensor until
+/// that time has passed would suit the transducer, but would make waits equal, so that nothing alternates.
 pub(super) fn refiring(robot: &Robot, _: Option<&AnySchedule>) -> Result<AnySchedule, ScheduleError> {
     let Robot { ref sensors, period, neighbours, min_refire, .. } = *robot;
     let table = table_i_d_for(sensors.len(), period, neighbours)?;
@@ -55,8 +54,8 @@ pub(super) fn soonest_refire(schedule: &AnySchedule, sensor: usize) -> Micros {
     after.into_iter().flatten().min().unwrap_or(schedule.min_refire())
 }
 
-/// Sensors in turns, each turn as long as they listen, and where their modules are known as long as those hear, and a
-/// round no shorter than those rest.
+/// Sensors in turns: each turn lasts as long as they listen or, if their modules are known, hear, and a round at least
+/// as long as the modules rest.
 fn in_turns(robot: &Robot, turns: usize) -> Result<AnySchedule, ScheduleError> {
     // A window that ends just when the next one begins still counts an echo at its very end.
     let turn = robot.window.max(robot.audible).saturating_add(Micros::new(1)).as_micros();
@@ -119,7 +118,7 @@ fn lags(sensors: usize, period: Micros, neighbours: u8) -> Vec<Micros> {
     (0..sensors).map(lag).collect()
 }
 
-/// Largest shift of a firing by dither: as far as the paper's waits, but never so far that a sensor would fire again
+/// Largest shift of a firing by dither: that of the paper's waits, but at most one with which no sensor fires again
 /// while it listens.
 pub(super) fn widest_dither(robot: &Robot) -> Micros {
     widest_wait(robot.period, robot.neighbours).min(robot.period.saturating_sub(robot.window))

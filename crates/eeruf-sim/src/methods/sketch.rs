@@ -1,5 +1,5 @@
-//! Firing as sketches and modules do it: [`LanePlan`], in which sets of sensors take turns, lane beside lane, and each
-//! turn ends with the last echo or with the time-out.
+//! Firing like today's sketches and modules: [`LanePlan`], in which sets of sensors take turns in parallel lanes, and
+//! each turn ends with the last echo or the time-out.
 
 use eeruf_core::{
     Instant, MAX_PHASES, MAX_SENSORS, Micros, Phase,
@@ -12,25 +12,25 @@ use super::ring_runner::{self, REMEMBERED, RingStart, SimulatedPlan, Started, Wa
 use super::schedules;
 use crate::world::{FiringTable, Robot, Sketch};
 
-/// Firing that takes its turns as sensors answer.
+/// A way whose turns end when sensors answer.
 pub(super) const fn way(ring: fn(&RingStart<'_>) -> Started) -> Way {
     Way { ring, refire: |_, _, _| Micros::ZERO, ..Way::by_table(schedules::together) }
 }
 
-/// By a table of any number of phases.
+/// A way with a table of any number of phases.
 pub(super) const TABLE: Way = Way { ring: table, refire: |robot, _, _| robot.window, ..Way::by_table(schedules::own) };
 
-/// One sensor after the other, each as soon as the one before has answered or was given up.
+/// Fires one sensor after the other, each as soon as the one before has answered or timed out.
 pub(super) fn in_turn(start: &RingStart<'_>) -> Started {
     lanes(start, vec![singly(0..start.robot.sensors.len() as u8)])
 }
 
-/// A loop that blocks waits so long for an echo: as long as an HC-SR04 without one holds its line.
+/// Time for which a blocking loop waits for an echo: as long as an HC-SR04 without one holds its line.
 const BLOCKS: Micros = Micros::from_millis(38);
-/// The pause of a loop that blocks.
+/// Pause of a blocking loop.
 const BLOCKING_PAUSE: Micros = Micros::from_millis(10);
 
-/// One sensor after the other, each waited for as long as a loop that blocks does.
+/// Fires one sensor after the other with the waits of a blocking loop.
 pub(super) fn blocking(start: &RingStart<'_>) -> Started {
     let mut robot = start.robot.clone();
     robot.window = robot.window.min(BLOCKS);
@@ -40,7 +40,7 @@ pub(super) fn blocking(start: &RingStart<'_>) -> Started {
     run(&robot, &start.judging, start.now, vec![lane], Micros::ZERO)
 }
 
-/// Arrays side by side, each in turn.
+/// Fires arrays in parallel, each one sensor after the other.
 pub(super) fn arrays(start: &RingStart<'_>) -> Started {
     let sensors = start.robot.sensors.len() as u8;
     let half = sensors.div_ceil(2);
@@ -62,7 +62,7 @@ pub(super) fn sync_line(start: &RingStart<'_>) -> Started {
     lanes_resting(start, vec![vec![(0..start.robot.sensors.len() as u8).collect()]], start.robot.module_rest())
 }
 
-/// Each module by a clock of its own.
+/// Fires each module by a clock of its own.
 pub(super) fn free_running(start: &RingStart<'_>) -> Started {
     let Robot { ref sensors, ref firing, .. } = *start.robot;
     let rest = firing.rest.unwrap_or_else(|| start.robot.module_rest());
@@ -77,7 +77,7 @@ pub(super) fn free_running(start: &RingStart<'_>) -> Started {
     run(start.robot, &start.judging, start.now, (0..sensors.len()).map(lane).collect(), Micros::ZERO)
 }
 
-/// By a table of any number of phases.
+/// Fires by a table of any number of phases.
 fn table(start: &RingStart<'_>) -> Started {
     let table = start.robot.firing.table.clone().unwrap_or_else(|| {
         let schedule = &start.plan.schedule;
@@ -98,7 +98,7 @@ fn given_or(given: &[Vec<u8>], default: impl FnOnce() -> Vec<Vec<u8>>) -> Vec<Ve
     if given.is_empty() { default() } else { given.to_vec() }
 }
 
-/// The robot as its sketch listens and compares.
+/// The robot with its sketch's settings for listening and comparing.
 fn listening(robot: &Robot) -> Robot {
     let Sketch { timeout, consecutive, .. } = robot.firing;
     Robot { window: timeout.unwrap_or(robot.window), consecutive: consecutive.max(2), ..robot.clone() }
@@ -153,16 +153,16 @@ impl FiringMethod for ByTable {
 #[derive(Clone, Debug)]
 struct Lane {
     sets: Vec<Vec<u8>>,
-    /// The set whose turn it is, and how many of its sensors have had their turn.
+    /// The current set, and how many of its sensors have had their turn.
     set: usize,
     place: usize,
     /// Time when the turn began or begins.
     due: Instant,
     /// Sensors of the set that still listen, bit x for sensor x.
     pending: u64,
-    /// The time from turn to turn, if it is fixed.
+    /// The time from one turn to the next, if it is fixed.
     cycle: Option<Micros>,
-    /// The time for which its sensors listen, and the time that they take where they hear nothing, if that is longer.
+    /// The listening time of its sensors, and the time that they take if they hear nothing, if that is longer.
     silent: Option<(Micros, Micros)>,
 }
 
@@ -171,7 +171,7 @@ impl Lane {
         Self { sets, set: 0, place: 0, due, pending: 0, cycle: None, silent: None }
     }
 
-    /// The sensor of the present set that fires next; none while the set listens.
+    /// The sensor of the present set that fires next; `None` while the set listens.
     fn next(&self) -> Option<u8> {
         self.sets.get(self.set)?.get(self.place).copied()
     }
@@ -181,7 +181,7 @@ impl Lane {
     }
 }
 
-/// Lanes side by side.
+/// Parallel lanes.
 #[derive(Clone, Debug)]
 struct LanePlan {
     lanes: Vec<Lane>,
@@ -193,7 +193,7 @@ struct LanePlan {
     triggered: [Option<Instant>; MAX_SENSORS],
     enabled: [bool; MAX_SENSORS],
     paused: bool,
-    /// Time between ends of periods, which is nothing to the firing.
+    /// Time between ends of periods, which do not affect the firing.
     period: Micros,
     period_start: Instant,
 }
@@ -203,7 +203,7 @@ impl LanePlan {
         self.period_start + self.period
     }
 
-    /// The lane that is due first, measured like the end of the period from its start.
+    /// The lane that is due first, measured from the start of the period like its end.
     fn first(&self) -> Option<usize> {
         if self.paused {
             return None;
@@ -213,7 +213,7 @@ impl LanePlan {
         first.map(|(index, _)| index).filter(|&index| self.period_end().has_reached(self.lanes[index].due))
     }
 
-    /// Passes over disabled sensors, and goes on to the next set once all of the present one have ended, no sooner than
+    /// Skips disabled sensors, and moves on to the next set once all of the present one have ended, no sooner than
     /// `soonest`.
     fn settle(&mut self, index: usize, soonest: Instant) {
         let enabled = self.enabled;

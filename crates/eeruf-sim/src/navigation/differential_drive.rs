@@ -1,12 +1,12 @@
-//! The platform of the paper's second set, TRC's `LabMate`: a box on two driven wheels, with limits to how fast it
-//! goes, turns, and changes either.
+//! The platform of the paper's second set, TRC's `LabMate`: a box on two driven wheels, with limited speed, rate of
+//! turn and acceleration.
 
 use crate::{
     geometry::{Moment, Pose, Vector},
     scene::Body,
 };
 
-/// Abilities of the platform.
+/// Limits of the platform.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct LabMate {
     /// Length and width, in metres.
@@ -22,8 +22,8 @@ pub struct LabMate {
 }
 
 impl Default for LabMate {
-    /// 75 x 75 cm and at most 1 m/s, as in the paper. The other limits are a choice, as heavy platforms of this size
-    /// have them: 1 m/s^2, 90 deg/s, 360 deg/s^2.
+    /// 75 x 75 cm and at most 1 m/s, as in the paper. The other limits are a choice, typical of heavy platforms of this
+    /// size: 1 m/s^2, 90 deg/s, 360 deg/s^2.
     fn default() -> Self {
         Self {
             side_m: 0.75,
@@ -52,14 +52,14 @@ impl Driven {
         Self { pose, speed_m_s: 0.0, turn_rad_s: 0.0 }
     }
 
-    /// Pose and velocity `after_s` seconds on, if nothing changes.
+    /// Pose and velocity `after_s` seconds later, at constant speeds.
     pub fn moment(&self, after_s: f64) -> Moment {
         let pose = self.carried(after_s);
         let velocity = pose.rotation * Vector::new(self.speed_m_s, 0.0);
         Moment { pose, velocity, turn_rad_s: self.turn_rad_s }
     }
 
-    /// Along the arc that both speeds make, taken as the chord in its middle's direction: for the few milliseconds of a
+    /// The pose after moving along the arc of both speeds, approximated by its chord: for the few milliseconds of a
     /// step the difference is far below a micrometre.
     fn carried(&self, for_s: f64) -> Pose {
         let heading = self.pose.rotation.angle();
@@ -76,7 +76,7 @@ impl LabMate {
         Body::Box(self.side_m, self.side_m)
     }
 
-    /// Drives for a short time while a speed and a rate of turn are asked for.
+    /// Drives for a short time towards a requested speed and rate of turn.
     ///
     /// ```
     /// use eeruf_sim::{Driven, LabMate, Pose};

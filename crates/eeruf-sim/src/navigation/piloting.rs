@@ -1,4 +1,4 @@
-//! All that is chosen when a robot steers by its readings: what a search for pilots changes.
+//! Parameters for steering a robot by its readings, which a search for pilots varies.
 
 use super::Vfh;
 
@@ -9,18 +9,18 @@ pub struct Piloting {
     pub vfh: Vfh,
     /// Rate of turn for a steering error of a radian, in rad/s.
     pub turn_gain: f64,
-    /// Echoes from farther away are not entered into the grid, but clear the way there, in metres.
+    /// Range in metres beyond which echoes are not entered into the grid, but only clear the way.
     pub range_m: f64,
     /// True if cells beside certain ones grow faster, see [`Himm::growth`](super::Himm::growth).
     pub growth: bool,
 }
 
 impl Piloting {
-    /// Result of an earlier search by the score of `eeruf` above all, the same for every method.
+    /// Result of an earlier search that optimised mainly `eeruf`, the same for every method.
     pub const SHARED: Self = tuned(3, 0.03, 13, 0.7, 360.0, 3.0, 2.75, true);
 }
 
-/// The published method with what a search may change. The arguments stand in the columns of a table.
+/// The published method with the parameters that a search varies, in the order of a table's columns.
 #[expect(clippy::too_many_arguments, reason = "a row of a table")]
 pub(crate) const fn tuned(
     smoothing: usize,

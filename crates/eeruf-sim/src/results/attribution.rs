@@ -12,9 +12,9 @@ use super::readings::{Cause, NO_PATH, Readings, SensorId};
 pub struct Attribution {
     /// The sensor that was fooled.
     pub receiver: SensorId,
-    /// Cause of the error. [`Cause::Nothing`]: it heard nothing where it should have.
+    /// Cause of the error. With [`Cause::Nothing`] it heard nothing where it should have.
     pub cause: Cause,
-    /// Sensor that caused it, if one did.
+    /// Sensor that caused it, if there is one.
     pub emitter: Option<SensorId>,
     /// Index into [`Readings::paths`], or [`NO_PATH`].
     pub path: u32,
@@ -45,8 +45,8 @@ impl Readings {
         rows
     }
 
-    /// The paths along which at least one believed reading was wrong, as indices into [`Readings::paths`], worst first:
-    /// what to draw.
+    /// The paths along which at least one believed reading was wrong, as indices into [`Readings::paths`], worst first,
+    /// for drawing.
     pub fn paths_that_fooled(&self, tolerance_us: f64) -> Vec<u32> {
         let rows = self.attribution(tolerance_us);
         rows.iter().filter(|row| row.accepted > 0 && row.path != NO_PATH).map(|row| row.path).collect()

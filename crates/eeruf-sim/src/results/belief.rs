@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::readings::{Cause, Readings, SensorId};
 
-/// Beyond this age, in seconds, a believed reading counts for nothing.
+/// Age, in seconds, beyond which a believed reading no longer counts.
 pub const BELIEF_LASTS_S: f64 = 0.6;
 
 /// Shares of the time of all sensors by what each last believed. They add up to 1.
@@ -15,23 +15,25 @@ pub const BELIEF_LASTS_S: f64 = 0.6;
 /// its place. At each firing of the sensor it is compared with what the sensor would read alone there.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct BeliefShares {
-    /// Right within the tolerance: an echo at the reference, or silence where the sensor alone hears none.
+    /// Share of time that is right within the tolerance: an echo at the reference, or silence where the sensor alone
+    /// hears none.
     #[serde(rename = "belief_right")]
     pub right: f64,
     /// Share of time without a belief, or with one that is too old.
     pub unknown: f64,
-    /// Foreign or stale sound.
+    /// Share of time with foreign or stale sound.
     pub phantom: f64,
-    /// An own echo later than the reference, or silence where the sensor alone hears an echo.
+    /// Share of time with an own echo later than the reference, or silence where the sensor alone hears an echo.
     pub too_far: f64,
-    /// An own echo earlier than the reference, or where the sensor alone hears none: faint but real.
+    /// Share of time with an own echo earlier than the reference, or one where the sensor alone hears none: faint but
+    /// real.
     pub faint: f64,
 }
 
 /// A believed reading of one sensor.
 struct Believed {
     fired_s: f64,
-    /// Carried on to the sensor's last firing; NaN for silence.
+    /// Echo time, corrected to the sensor's last firing; NaN for silence.
     t_echo_us: f64,
     cause: Cause,
 }
@@ -74,7 +76,7 @@ impl Readings {
 }
 
 impl Believed {
-    /// Returns the share of `of` that the belief adds to, with this reference.
+    /// Returns the share of `of` to which the belief counts, with this reference.
     fn state<'b>(&self, reference_us: f64, tolerance_us: f64, of: &'b mut BeliefShares) -> &'b mut f64 {
         let off_us = self.t_echo_us - reference_us;
         if off_us.abs() <= tolerance_us || (self.t_echo_us.is_nan() && reference_us.is_nan()) {

@@ -1,5 +1,5 @@
-//! Results: every reading with its cause, the figures of a method, and who was fooled by whom. It uses `methods` and
-//! `scene` for the names of things; `simulation` fills it.
+//! Results: every reading with its cause, the figures of a method, and which sensor was fooled by which. It uses names
+//! of `methods` and `scene`; `simulation` fills it.
 
 mod attribution;
 mod belief;

@@ -1,10 +1,10 @@
-//! Some of the [`Readings`], or those of several steps as one.
+//! Selection and concatenation of [`Readings`].
 
 use std::collections::HashMap;
 
 use super::readings::{HeardPath, NO_PATH, Readings};
 
-/// Does one thing to every column.
+/// Applies an operation to every column.
 macro_rules! each_column {
     ($do:ident!($($given:tt)*)) => {
         $do!($($given)*; robot sensor period phase fired_s x_m y_m heading_rad kind t_echo_us earliest_us reference_us
@@ -13,7 +13,7 @@ macro_rules! each_column {
 }
 
 impl Readings {
-    /// The readings at these places, in this order, of the same duration and number of sensors.
+    /// The readings at these places, in this order, with the same duration and number of sensors.
     ///
     /// # Panics
     /// If a place is not below [`len`](Self::len).
@@ -65,7 +65,7 @@ impl Readings {
         Some(all)
     }
 
-    /// Drops the paths that no reading came along.
+    /// Drops the paths that no reading used.
     fn keep_used_paths(&mut self) {
         let mut numbers = vec![NO_PATH; self.paths.len()];
         for path in self.path.iter().filter(|&&path| path != NO_PATH) {

@@ -1,5 +1,5 @@
-//! Result of a simulation: every reading of every sensor as arrays of equal length, each with what caused it and with
-//! what the sensor would have read alone.
+//! Results of a simulation: every reading of every sensor as arrays of equal length, with its cause and the reading
+//! that the sensor would have had alone.
 
 use std::collections::TryReserveError;
 
@@ -33,7 +33,7 @@ pub enum Cause {
     External,
 }
 
-/// Stands for "no path" in [`Readings::path`].
+/// Marker of "no path" in [`Readings::path`].
 pub const NO_PATH: u32 = u32::MAX;
 
 /// A path along which sound reached a sensor.
@@ -45,29 +45,29 @@ pub struct HeardPath {
     pub receiver: SensorId,
     /// Number of bounces.
     pub order: u32,
-    /// The length in metres, when it was first heard if something moves.
+    /// The length in metres; if something moves, when the path was first heard.
     pub length_m: f64,
-    /// Direction in which it leaves, in the scene's frame.
+    /// Direction of departure, in the scene's frame.
     pub departure_rad: f64,
-    /// Direction in which the receiver looks to see it, in the scene's frame.
+    /// Direction in which the receiver sees it, in the scene's frame.
     pub arrival_rad: f64,
     /// The bounces, emitter to receiver. [`Scene::bounce_points`](crate::Scene::bounce_points) says where they are.
     pub bounces: Box<[Bounce]>,
 }
 
 impl HeardPath {
-    /// Returns true if it causes *direct* crosstalk: straight over or by a single reflection.
+    /// Returns true if it causes *direct* crosstalk: without a bounce or by a single reflection.
     pub fn is_direct(&self) -> bool {
         self.order <= 1
     }
 }
 
-/// Readings as arrays of equal length, in the order in which the rings gave them. Times without a value are NaN.
+/// Readings as arrays of equal length, in the order in which the rings emitted them. Times without a value are NaN.
 #[derive(Clone, Debug)]
 pub struct Readings {
     /// The method that was simulated.
     pub method: Method,
-    /// Duration, in seconds of true time; readings of all firings within it are here.
+    /// Duration, in seconds of true time; all firings within it have their readings here.
     pub duration_s: f64,
     /// Number of sensors the world has.
     pub sensors: usize,
@@ -87,16 +87,16 @@ pub struct Readings {
     pub y_m: Vec<f64>,
     /// The heading then, in radians of the scene, counter-clockwise from the x axis, in (-pi, pi].
     pub heading_rad: Vec<f64>,
-    /// Verdict of the method on the reading. Methods that believe everything know [`ReadingKind::Accepted`] and
+    /// Verdict of the method on the reading. Methods that believe everything have only [`ReadingKind::Accepted`] and
     /// [`ReadingKind::Clear`].
     pub kind: Vec<ReadingKind>,
-    /// The echo time that the method gives, in microseconds of the robot's clock: the firing's earliest echo, but for
-    /// `multi_echo` the one that repeats, and for `median` the median.
+    /// The echo time that the method gives, in microseconds of the robot's clock: the firing's earliest echo, for
+    /// `multi_echo` the one that repeats, for `median` the median.
     pub t_echo_us: Vec<f64>,
     /// The earliest echo of this firing, in microseconds of the robot's clock.
     pub earliest_us: Vec<f64>,
-    /// Reading of the sensor if it fired alone at this place in quiet air: the first arrival of its own sound that is
-    /// loud enough, between blanking and the end of the window, without fading and jitter. In microseconds of true
+    /// The reading that the sensor would have alone at this place in quiet air: the first arrival of its own sound that
+    /// is loud enough, between blanking and the end of the window, without fading and jitter. In microseconds of true
     /// time.
     pub reference_us: Vec<f64>,
     /// Cause of `t_echo_us`.
@@ -108,7 +108,7 @@ pub struct Readings {
     /// The change that odometry expects of a good reading since the sensor's firing before, in microseconds; 0 for a
     /// robot without odometry.
     pub expected_change_us: Vec<i32>,
-    /// Every path that some reading came along.
+    /// Every path of some reading.
     pub paths: Vec<HeardPath>,
 }
 
@@ -119,7 +119,7 @@ impl Readings {
         readings.saturating_mul((whole + size_of::<(u8, u8, ReadingKind, Cause)>()) as u64)
     }
 
-    /// None yet.
+    /// Empty readings.
     pub(crate) fn new(method: Method, duration_s: f64, sensors: usize) -> Self {
         Self {
             method,
@@ -145,7 +145,7 @@ impl Readings {
         }
     }
 
-    /// Makes room for this many more, if the memory is there.
+    /// Reserves room for this many more, if there is memory.
     pub(crate) fn try_reserve(&mut self, more: usize) -> Result<(), TryReserveError> {
         let Self { robot, sensor, period, phase, fired_s, kind, .. } = self;
         robot.try_reserve(more)?;
@@ -174,8 +174,8 @@ impl Readings {
         self.emitted_s.capacity() - self.emitted_s.len()
     }
 
-    /// Takes all readings out: the columns themselves if they are at least half full, else copies without room to grow,
-    /// so that who keeps the records of many short steps keeps what is in them and no more.
+    /// Takes all readings out: the columns themselves if they are at least half full, otherwise exact copies, so that
+    /// records of many short steps take no more memory than needed.
     pub(crate) fn take(&mut self) -> Self {
         if self.room() <= self.len() {
             let next = Self::new(self.method, self.duration_s, self.sensors);
@@ -186,7 +186,7 @@ impl Readings {
         copy
     }
 
-    /// Forgets them all, and keeps the room.
+    /// Clears all readings, and keeps the memory.
     fn clear(&mut self) {
         let Self { robot, sensor, period, phase, fired_s, kind, .. } = self;
         robot.clear();
@@ -225,8 +225,8 @@ impl Readings {
         SensorId { robot: self.robot[reading], sensor: self.sensor[reading] }
     }
 
-    /// Returns true if the method believes the reading: an accepted echo, if only tentatively, or confirmed that
-    /// nothing is in range.
+    /// Returns true if the method believes the reading: an accepted echo, even a tentative one, or confirmed free
+    /// space.
     pub fn is_accepted(&self, reading: usize) -> bool {
         self.is_confirmed(reading) || self.kind[reading] == ReadingKind::Tentative
     }
@@ -236,18 +236,18 @@ impl Readings {
         matches!(self.kind[reading], ReadingKind::Accepted | ReadingKind::Clear)
     }
 
-    /// Returns true if what the reading says is wrong, believed: more than `tolerance_us` off the reference, an echo
+    /// Returns true if the reading, if believed, would be wrong: more than `tolerance_us` off the reference, an echo
     /// where the sensor alone hears none, or none where it hears one.
     pub fn is_wrong(&self, reading: usize, tolerance_us: f64) -> bool {
         is_off(self.t_echo_us[reading], self.reference_us[reading], tolerance_us)
     }
 
-    /// Returns true if the firing's earliest echo is right by the same measure, so that a reading was there to be had.
+    /// Returns true if the firing's earliest echo is right by the same measure, so that a right reading was possible.
     pub fn is_good(&self, reading: usize, tolerance_us: f64) -> bool {
         !is_off(self.earliest_us[reading], self.reference_us[reading], tolerance_us)
     }
 
-    /// The path that a reading came along.
+    /// The path of a reading.
     pub fn path_of(&self, reading: usize) -> Option<&HeardPath> {
         self.paths.get(self.path[reading] as usize)
     }

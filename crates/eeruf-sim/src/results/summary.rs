@@ -1,4 +1,4 @@
-//! Quality of a method: the figures that are always reported together, since each alone is easily made good at the cost
+//! Quality of a method: the figures that are always reported together, since each alone is easily improved at the cost
 //! of the others.
 
 use serde::{Deserialize, Serialize};
@@ -14,9 +14,8 @@ pub const DEFAULT_TOLERANCE_US: f64 = 500.0;
 /// A method's figures over one simulation, all robots together. Shares are fractions of 1.
 ///
 /// A reading is what one firing of one sensor gave. It is *accepted* if the method believes it (an echo it accepts, or
-/// that nothing is in range), *wrong* if what it says differs from the reference by more than the tolerance or says
-/// echo where the sensor alone hears none or the reverse, and *good* if the firing's earliest echo was not wrong,
-/// believed or not.
+/// that nothing is in range), *wrong* if it differs from the reference by more than the tolerance, or has an echo where
+/// the sensor alone hears none or the reverse, and *good* if the firing's earliest echo was not wrong, believed or not.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
     /// The method.
@@ -25,10 +24,10 @@ pub struct Summary {
     pub readings: usize,
     /// Number of those that were accepted.
     pub accepted: usize,
-    /// Share of all readings that were accepted and wrong: what does harm.
+    /// Share of all readings that were accepted and wrong: the harmful ones.
     pub wrong_of_all: f64,
-    /// The part of `wrong_of_all` that foreign or stale sound caused. The rest are the sensor's own doing: an echo just
-    /// loud enough that faded away once, so that the sensor reads what lies behind.
+    /// The part of `wrong_of_all` that foreign or stale sound caused. The rest are the sensor's own errors: an echo
+    /// just loud enough that faded once, so that the sensor reads a farther object.
     pub crosstalk_of_all: f64,
     /// The part of `wrong_of_all` that was confirmed, not only tentative.
     pub confirmed_wrong_of_all: f64,
@@ -36,10 +35,10 @@ pub struct Summary {
     pub wrong_of_accepted: Option<f64>,
     /// Share of all readings that were not accepted: rejected, first of a pair, without echo once.
     pub rejected: f64,
-    /// Share of the good readings that were not accepted, the false rejections: what the method costs; `None` if no
-    /// reading was good.
+    /// Share of the good readings that were not accepted, the false rejections, which are the method's cost; `None` if
+    /// no reading was good.
     pub good_lost: Option<f64>,
-    /// Share of all readings that were not good: what would have been wrong without any filter.
+    /// Share of all readings that were not good and would have been wrong without a filter.
     pub wrong_before_filter: f64,
     /// Shares of the time by what was last believed.
     #[serde(flatten)]
@@ -55,9 +54,8 @@ pub struct Summary {
     pub starved: usize,
     /// Number of sensors that were right under 5 % of the times they fired: the reading was accepted and not wrong.
     pub blind: usize,
-    /// Number of starved sensors that read right in one phase and not in another (more than half of the phase's
-    /// readings are good, or fewer): foreign sound comes first in part of the periods only, but no two consecutive
-    /// readings agree.
+    /// Number of starved sensors that are mostly good in one phase and not in another: foreign sound comes first in
+    /// some periods only, but no two consecutive readings agree.
     pub starved_in_part: usize,
 }
 
@@ -65,10 +63,10 @@ pub struct Summary {
 /// reading came from (from the start of the simulation before the first) to the present firing. At best one period.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Age {
-    /// Half of the time no older than this.
+    /// The median.
     #[serde(rename = "age_ms")]
     pub median: f64,
-    /// 99 % of the time no older than this.
+    /// The 99th percentile.
     #[serde(rename = "age_p99_ms")]
     pub p99: f64,
 }
@@ -79,7 +77,7 @@ impl Readings {
         self.summary_within(DEFAULT_TOLERANCE_US)
     }
 
-    /// The figures with another tolerance, in microseconds.
+    /// The figures with a given tolerance, in microseconds.
     pub fn summary_within(&self, tolerance_us: f64) -> Summary {
         let (mut accepted, mut wrong, mut crosstalk, mut good, mut false_rejections) = (0, 0, 0, 0, 0);
         let (mut confirmed_wrong, mut right_echoes) = (0, 0);
@@ -145,7 +143,7 @@ impl Readings {
     }
 }
 
-/// For each phase how many of a sensor's readings were good, of how many.
+/// For each phase the number of a sensor's good readings, and of all its readings.
 type Phases = Vec<(usize, usize)>;
 
 fn count(phases: &mut Phases, phase: u8, is_good: bool) {
@@ -163,7 +161,7 @@ fn differ(phases: &Phases) -> bool {
     mostly_good.next().is_some_and(|first| mostly_good.any(|other| other != first))
 }
 
-/// The value that a share of the others does not exceed; 0 without values. Reorders them.
+/// The value that this share of the values does not exceed; 0 without values. Reorders them.
 pub fn quantile(values: &mut [f64], share: f64) -> f64 {
     if values.is_empty() {
         return 0.0;

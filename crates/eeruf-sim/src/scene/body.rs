@@ -1,4 +1,4 @@
-//! A robot's body: a disc, a box or a convex polygon, that others' sound is reflected and shaded by.
+//! A robot's body: a disc, a box or a convex polygon that reflects and shades the sound of others.
 
 use core::fmt;
 
@@ -9,7 +9,7 @@ use parry2d_f64::{
     shape::{Ball, ConvexPolygon, Cuboid, Shape},
 };
 
-/// The most corners of a polygon: a choice; a robot's outline has no more.
+/// Largest number of corners of a polygon: a choice.
 pub const MAX_CORNERS: usize = 8;
 
 /// A robot's outline, centred on its pose.
@@ -30,7 +30,7 @@ pub struct Outline {
     count: usize,
 }
 
-/// Reason why corners make no convex polygon.
+/// Reason why corners do not form a convex polygon.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum OutlineError {
@@ -39,7 +39,7 @@ pub enum OutlineError {
         /// The number given.
         count: usize,
     },
-    /// One where the outline does not turn to the left, or that is not a number.
+    /// An invalid corner: the outline does not turn left there, or it is not a number.
     Corner {
         /// The index.
         corner: usize,
@@ -107,7 +107,7 @@ impl Outline {
 }
 
 impl Body {
-    /// Calls a function with the shape that it is to parry.
+    /// Calls a function with the parry shape of the body.
     pub(super) fn with_shape<R>(&self, call: impl FnOnce(&dyn Shape) -> R) -> R {
         match *self {
             Self::Disc(radius) => call(&Ball::new(radius)),
@@ -133,8 +133,8 @@ impl Body {
         self.overlaps(pose, &Self::Disc(TOUCH_M), &Pose::from(point.coords))
     }
 
-    /// Returns the corners at a pose, clockwise, the first one at the end again, as a pillar's walls are walked; none
-    /// for a disc.
+    /// Returns the corners at a pose, clockwise like a pillar's walls, with the first one repeated at the end; none for
+    /// a disc.
     pub(crate) fn walls_around(&self, pose: &Pose) -> Vec<[f64; 2]> {
         let mut corners: Vec<Point> = match *self {
             Self::Disc(_) => return Vec::new(),
@@ -148,7 +148,7 @@ impl Body {
         corners.iter().map(|corner| pose * corner).map(|corner| [corner.x, corner.y]).collect()
     }
 
-    /// Number of walls that go around it; none around a disc.
+    /// Number of walls around the body; 0 for a disc.
     pub(crate) fn sides(&self) -> usize {
         match self {
             Self::Disc(_) => 0,
@@ -157,7 +157,7 @@ impl Body {
         }
     }
 
-    /// Returns true if its measures are positive numbers.
+    /// Returns true if its dimensions are positive numbers.
     pub(crate) fn is_valid(&self) -> bool {
         let fits = |size: f64| size > 0.0 && size <= super::MAX_POLE_M;
         match *self {
@@ -168,7 +168,7 @@ impl Body {
     }
 }
 
-/// A pose as parry has it.
+/// A pose in parry's form.
 pub(super) fn placed(pose: &Pose) -> ParryPose {
     ParryPose::new(pose.translation.vector.into(), pose.rotation.angle())
 }

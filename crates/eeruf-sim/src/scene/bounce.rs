@@ -1,4 +1,4 @@
-//! An object that a path meets on its way: one of the scene's walls, poles or edges.
+//! An object that reflects or diffracts a path: a wall, a pole, an edge, the floor or the ceiling.
 
 /// One bounce of a path.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Debug)]
@@ -7,23 +7,23 @@ pub enum Bounce {
     Wall(u32),
     /// A bounce at the pole with this index.
     Pole(u32),
-    /// Around the edge with this index, among [`Scene::edges`](super::Scene::edges).
+    /// Diffraction at the edge with this index, among [`Scene::edges`](super::Scene::edges).
     Edge(u32),
-    /// A bounce at the floor. Bounces at floor and ceiling stand after the others, in the order in which the path meets
-    /// them; where it does so between the walls, lengths and heights say.
+    /// A bounce at the floor. Bounces at floor and ceiling are listed after the others, in the order in which the path
+    /// meets them; lengths and heights determine where between the walls that is.
     Floor,
     /// A bounce at the ceiling.
     Ceiling,
 }
 
-/// The number of the first edge, beyond all walls, and those of floor and ceiling, beyond all edges.
+/// The number of the first edge, above all walls, and those of floor and ceiling, above all edges.
 const EDGES: i64 = 1 << 32;
 const FLOOR: i64 = 1 << 33;
 const CEILING: i64 = FLOOR + 1;
 
 impl Bounce {
-    /// The number that stands for it in files and in Python: a wall's index; -1 minus a pole's; 2^32 plus an edge's;
-    /// 2^33 for the floor and one more for the ceiling.
+    /// Its number in files and in Python: a wall's index; -1 minus a pole's; 2^32 plus an edge's; 2^33 for the floor
+    /// and one more for the ceiling.
     ///
     /// ```
     /// use eeruf_sim::Bounce;
@@ -57,7 +57,7 @@ impl Bounce {
         matches!(self, Self::Floor | Self::Ceiling)
     }
 
-    /// The bounces of a path that are seen in the plan: all but floor and ceiling, which stand last.
+    /// The bounces of a path in the plan: all except those at floor and ceiling, which come last.
     pub fn in_plan(bounces: &[Self]) -> &[Self] {
         let vertical = bounces.iter().rev().take_while(|bounce| bounce.is_vertical()).count();
         &bounces[..bounces.len() - vertical]

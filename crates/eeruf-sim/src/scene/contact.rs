@@ -1,4 +1,4 @@
-//! Contact: does a robot's body touch a wall or a pole, or stand inside something solid. Carried by parry's shapes.
+//! Contact of a robot's body with walls, poles and solids, by parry's shapes.
 
 use super::body::{Body, meets, placed};
 use super::scene::Scene;
@@ -21,7 +21,7 @@ pub enum Contact {
 }
 
 impl Scene {
-    /// The first thing that a body at a pose touches: the wall with the lowest index, else a pole, else solid ground.
+    /// The first thing that a body at a pose touches: the wall with the lowest index, else a pole, else a solid region.
     ///
     /// ```
     /// use eeruf_sim::{Air, Body, Contact, Pole, Pose, Scene, Wall, Vector};

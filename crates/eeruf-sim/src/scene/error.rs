@@ -1,17 +1,17 @@
-//! Errors of a scene, and the limits that it must keep. Walls and poles are counted from 0, as in code and files.
+//! Errors of a scene, and its limits. Walls and poles are counted from 0, as in code and files.
 
 use core::fmt;
 
 /// The highest ceiling, in metres.
 pub(crate) const MAX_CEILING_M: f64 = 1000.0;
 
-/// The most walls a scene may have: a choice of memory.
+/// Largest number of walls in a scene: a choice of memory.
 pub const MAX_WALLS: usize = 10_000_000;
-/// No coordinate may be farther from the origin, in metres: a choice; an `f64` still resolves 1e-11 m there.
+/// Greatest distance of a coordinate from the origin, in metres: a choice; an `f64` still resolves 1e-11 m there.
 pub const MAX_COORDINATE_M: f64 = 1e5;
 /// The shortest wall, in metres: a choice, a thousand times the distance at which two points are one.
 pub const MIN_WALL_M: f64 = 1e-6;
-/// The thickest pole's radius, in metres: a choice; whatever is rounder is a wall.
+/// Largest radius of a pole, in metres: a choice; use walls for rounder objects.
 pub const MAX_POLE_M: f64 = 100.0;
 
 /// Reason why a scene cannot be built.
@@ -41,7 +41,7 @@ pub enum SceneError {
     WallsCross {
         /// Indices of the two walls.
         walls: [usize; 2],
-        /// Where, in metres.
+        /// Point of crossing, in metres.
         at: [f64; 2],
     },
     /// More walls than the mesh can number.
@@ -73,7 +73,7 @@ pub enum SceneError {
     },
     /// Temperature, humidity or pressure outside what the formulas hold for.
     Air {
-        /// One of the three.
+        /// The name of the quantity.
         quantity: &'static str,
         /// The offending number.
         value: f64,
@@ -87,7 +87,7 @@ pub enum SceneError {
     },
     /// An invalid material of floor or ceiling.
     RoomMaterial {
-        /// One of the two.
+        /// The surface: floor or ceiling.
         surface: &'static str,
     },
     /// The walls meet in a way that the mesh cannot hold, such as many crossing within a nanometre.
@@ -97,7 +97,7 @@ pub enum SceneError {
     },
 }
 
-/// The message about a material, after whose it is.
+/// The end of the message about a material, after its owner.
 const OUT_OF_RANGE: &str = "is out of range; expected a reflection of 0 to 1 and a roughness of 0 m or more";
 
 impl fmt::Display for SceneError {

@@ -1,4 +1,4 @@
-//! Effect of a wall on the sound that it reflects: a pressure reflection coefficient and a surface roughness.
+//! The effect of a wall on the sound that it reflects: a pressure reflection coefficient and a surface roughness.
 
 /// The surface of a wall or a pole.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
@@ -14,9 +14,9 @@ impl Material {
     pub const SMOOTH: Self = Self::flat(0.95);
     /// A painted wall: 0.9 (a choice).
     pub const PAINTED: Self = Self::flat(0.9);
-    /// Curtain or foam: 0.5 at the most (a choice).
+    /// Curtain or foam: at most 0.5 (a choice).
     pub const SOFT: Self = Self::flat(0.5);
-    /// Returns everything; for checks against plain geometry.
+    /// Perfect reflection, for checks against plain geometry.
     pub const PERFECT: Self = Self::flat(1.0);
 
     /// A perfectly flat surface.

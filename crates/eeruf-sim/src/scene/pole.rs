@@ -3,8 +3,8 @@
 use super::material::Material;
 use crate::geometry::Point;
 
-/// An upright cylinder that reflects. Whether it shades what lies behind it, its thickness and
-/// [`Physics::shadows`](crate::Physics::shadows) decide.
+/// An upright cylinder that reflects. Its thickness and [`Physics::shadows`](crate::Physics::shadows) decide if it
+/// shades what lies behind it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pole {
     /// The axis.

@@ -3,7 +3,7 @@
 use super::error::{MAX_CEILING_M, SceneError};
 use super::material::Material;
 
-/// The height of a sensor that none is given for, in metres: a choice, about that of a small robot's ring.
+/// The default height of a sensor, in metres: a choice, about that of a small robot's ring.
 pub const DEFAULT_HEIGHT_M: f64 = 0.3;
 
 /// Floor and ceiling. Walls and poles reach from one to the other, so that every path is one of the plan's with bounces

@@ -1,5 +1,5 @@
-//! A scene: checked walls and poles in air, with everything that is derived from them once (mesh, mirrors, broad
-//! phase). Robots, noise and seeds wrap around it; a scene itself never changes.
+//! A scene: checked walls and poles in air, with the data derived from them (mesh, mirrors, broad phase). A scene never
+//! changes; robots, noise and seeds belong to the world around it.
 
 use super::error::{MAX_COORDINATE_M, MAX_POLE_M, MAX_WALLS, MIN_WALL_M, SceneError};
 use super::mesh::Mesh;
@@ -31,18 +31,18 @@ fn check(air: &Air) -> Result<(), SceneError> {
 /// Walls, poles and air, checked and ready for questions.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// Shared by scenes that differ in their poles alone.
+    /// Derived data, shared by scenes that differ only in their poles.
     built: Arc<Built>,
     poles: Vec<Pole>,
     air: Air,
     room: Option<Room>,
-    /// Overlaps of triangles and poles' discs: (triangle, pole).
+    /// Pairs (triangle, pole) of overlapping triangles and poles.
     pub(crate) pole_triangles: Vec<(u32, u32)>,
     /// True if any surface is rough.
     pub(crate) rough: bool,
 }
 
-/// Walls, with what is derived from them once.
+/// Walls, with the data derived from them.
 #[derive(Debug)]
 struct Built {
     walls: Vec<Wall>,
@@ -50,13 +50,13 @@ struct Built {
     mirrors: Vec<Mirror>,
     boxes: Bvh,
     edges: Vec<Edge>,
-    /// The triangles that each edge is a corner of; found when first asked for.
+    /// For each edge, the triangles of which it is a corner; computed on demand.
     edge_triangles: OnceLock<Vec<Box<[u32]>>>,
-    /// Triangles, each with an edge that is a corner of it, in order; likewise.
+    /// Pairs of a triangle and an edge that is its corner, in order; computed on demand.
     triangle_edges: OnceLock<Vec<(u32, u32)>>,
-    /// The edges by place; likewise.
+    /// The edges by place; computed on demand.
     edge_boxes: OnceLock<Bvh>,
-    /// Extents of walls; found when first asked for.
+    /// Extents of walls; computed on demand.
     extents: OnceLock<Extents>,
 }
 
@@ -97,7 +97,7 @@ impl Scene {
         none.among(poles)
     }
 
-    /// Puts these poles behind its own.
+    /// Appends these poles to its own.
     fn among(mut self, more: Vec<Pole>) -> Self {
         for (index, pole) in (self.poles.len() as u32..).zip(&more) {
             let near = self.built.mesh.near(pole.centre, pole.radius_m * (1.0 + 1e-9));
@@ -108,7 +108,7 @@ impl Scene {
         self
     }
 
-    /// Returns the scene with more poles, over the same mesh; over a new one where a pole is beyond that.
+    /// Returns the scene with more poles, with the same mesh, or a new one if a pole lies outside it.
     pub(crate) fn with_more_poles(&self, more: Vec<Pole>) -> Result<Self, SceneError> {
         let Self { built, air, room, rough, .. } = self;
         if !more.iter().all(|pole| built.mesh.covers(pole.centre)) {
@@ -148,7 +148,7 @@ impl Scene {
     }
 
     /// The free ends of walls and the corners that jut out, which sound bends around if
-    /// [`Physics::edges`](crate::Physics::edges) says so. Those of solid regions, seen from within, are among them.
+    /// [`Physics::edges`](crate::Physics::edges) says so. They include edges of solid regions, seen from within.
     pub fn edges(&self) -> &[Edge] {
         &self.built.edges
     }
@@ -181,8 +181,8 @@ impl Scene {
         of_all.get(edge).map_or(&[], |triangles| triangles)
     }
 
-    /// Finds the edges in sight of a point within reach, and some that are not, in order; with the triangles that
-    /// contain it.
+    /// Finds the edges that are visible from a point within reach, and some others, in order. The point is given with
+    /// the triangles that contain it.
     pub(crate) fn edges_seen(&self, from: Point, starts: &[u32], reach_m: f64, seen: &mut Vec<u32>) {
         let pairs = self.built.triangle_edges.get_or_init(|| {
             let corner = |edge: u32| self.triangles_at(edge as usize).iter().map(move |&triangle| (triangle, edge));

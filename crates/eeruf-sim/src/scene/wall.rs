@@ -1,11 +1,11 @@
-//! A wall: a straight reflecting piece between two points, and what its two sides do.
+//! A wall: a straight reflecting piece between two points, and the behaviour of its two sides.
 
 use serde::{Deserialize, Serialize};
 
 use super::material::Material;
 use crate::geometry::Point;
 
-/// Effect of a wall on a beam that meets it.
+/// The behaviour of a wall's sides towards sound.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Faces {
@@ -28,7 +28,7 @@ pub struct Wall {
     pub to: Point,
     /// Sides that reflect.
     pub faces: Faces,
-    /// Effect of its surface on the amplitude.
+    /// Surface of the wall.
     pub material: Material,
 }
 

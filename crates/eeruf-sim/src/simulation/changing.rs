@@ -1,5 +1,4 @@
-//! A world that is exchanged for another while its rings go on: a wall that is somewhere else from one moment to the
-//! next.
+//! Simulation of worlds that replace each other while rings go on, for a wall that changes its place at one moment.
 
 use std::sync::Arc;
 
@@ -9,9 +8,9 @@ use super::kinematics::Planned;
 use super::options::Options;
 use crate::{methods::Method, results::Readings, threads::Stop, world::World};
 
-/// Simulates worlds in turn, `each` periods of the first robot each, until [`Options::periods`] are over. Nothing but
-/// the scene may differ, and nothing may move. Sound that is on its way when the scene changes arrives as it would have
-/// in the scene before.
+/// Simulates worlds in turn, `each` periods of the first robot each, until [`Options::periods`] are over. Only the
+/// scenes may differ, and nothing may move. Sound in flight when the scene changes arrives as it would have in the
+/// scene before.
 ///
 /// # Errors
 /// As [`simulate`](super::simulate); with no world, [`SimulationError::Stopped`].

@@ -15,7 +15,7 @@ use crate::{
     world::{AnySchedule, Robot, Sketch, World},
 };
 
-/// Makes the caller's own firings and filters again for each simulation.
+/// A factory of the caller's own firing methods and filters, called for each simulation.
 pub trait MakeOwn: fmt::Debug + Send + Sync {
     /// The firings and filters of these robots, the first of a world.
     ///
@@ -24,8 +24,8 @@ pub trait MakeOwn: fmt::Debug + Send + Sync {
     fn make(&self, robots: &[Robot]) -> Result<Own, OwnError>;
 }
 
-/// A method under a name, with the schedule, the settings and the caller's own code that make it another one: a value
-/// that simulations and all experiments take alike. What it does not set is the robot's or the experiment's.
+/// A method under a name, with its own schedule, settings and code. Simulations and all experiments accept it. Settings
+/// that it does not have come from the robot or the experiment.
 ///
 /// ```
 /// use eeruf_core::Micros;
@@ -47,12 +47,12 @@ pub struct Entry {
 }
 
 impl Entry {
-    /// A method as it is, under another name.
+    /// A method without changes, under another name.
     pub fn new(name: &str, method: Method) -> Self {
         Self { name: name.into(), method, flow: None, schedule: None, sketch: None, own: None }
     }
 
-    /// Methods as they are, under their names.
+    /// Methods without changes, under their own names.
     pub fn all(methods: impl IntoIterator<Item = Method>) -> Vec<Self> {
         methods.into_iter().map(Self::from).collect()
     }
@@ -63,7 +63,7 @@ impl Entry {
         Self { name: name.into(), ..self }
     }
 
-    /// Sets how [`Method::Flow`] spaces its firings and weighs its readings.
+    /// Sets the settings of [`Method::Flow`].
     #[must_use]
     pub fn with_flow(self, flow: FlowOptions) -> Self {
         Self { flow: Some(flow), ..self }
@@ -75,7 +75,7 @@ impl Entry {
         Self { schedule: Some(schedule), ..self }
     }
 
-    /// Sets how the robot's ring is fired as it is.
+    /// Sets the robot's [`Sketch`].
     #[must_use]
     pub fn with_sketch(self, sketch: Sketch) -> Self {
         Self { sketch: Some(sketch), ..self }
@@ -92,12 +92,12 @@ impl Entry {
         &self.name
     }
 
-    /// The method that it is made of.
+    /// The method on which it is based.
     pub const fn method(&self) -> Method {
         self.method
     }
 
-    /// The robot with what the entry changes of it.
+    /// The robot with the entry's changes.
     #[must_use]
     pub fn robot(&self, mut robot: Robot) -> Robot {
         robot.schedule = self.schedule.or(robot.schedule);
@@ -108,7 +108,7 @@ impl Entry {
         robot
     }
 
-    /// The options with what the entry changes of them.
+    /// The options with the entry's changes.
     #[must_use]
     pub fn options(&self, options: Options) -> Options {
         Options { flow: self.flow.unwrap_or(options.flow), ..options }
@@ -123,8 +123,8 @@ impl Entry {
         made.map_err(|error| SimulationError::Own { robot: 0, what: "method", at_s: 0.0, error })
     }
 
-    /// Simulates a world whose robots are [`robot`](Self::robot)s of this entry. `stop` ends it from another thread,
-    /// and so does `keep_going`, which is called now and then with the share of time that has passed.
+    /// Simulates a world whose robots are [`robot`](Self::robot)s of this entry. `stop` ends it from another thread; so
+    /// does `keep_going`, which is sometimes called with the passed share of the time, if it returns `false`.
     ///
     /// # Errors
     /// As [`simulate`](crate::simulate()), and for what the caller's own code refuses.
@@ -146,7 +146,7 @@ impl From<Method> for Entry {
     }
 }
 
-/// Own code is equal if it is the same.
+/// Equality; own code is equal if it is the same object.
 impl PartialEq for Entry {
     fn eq(&self, other: &Self) -> bool {
         let Self { name, method, flow, schedule, sketch, own } = self;

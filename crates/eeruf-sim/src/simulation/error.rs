@@ -9,8 +9,8 @@ use crate::results::Readings;
 use crate::tracing::PathsError;
 use crate::world::WorldError;
 
-/// Reason why a simulation cannot be run. Robots are counted from 0 in code and printed from 1.
-/// `{:#}` counts from 0 where `{}` counts from 1.
+/// Reason why a simulation cannot be run. Robots are counted from 0 in code and printed from 1. `{:#}` counts from 0,
+/// `{}` from 1.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum SimulationError {
@@ -23,7 +23,7 @@ pub enum SimulationError {
         /// Reason.
         error: ScheduleError,
     },
-    /// A robot's ring cannot listen as asked under the method.
+    /// A robot's ring cannot listen as requested under the method.
     Ring {
         /// The robot.
         robot: usize,
@@ -32,7 +32,7 @@ pub enum SimulationError {
         /// Reason.
         error: RingError,
     },
-    /// No schedule keeps a robot's `t_delta` and window for [`Method::Adaptive`].
+    /// No schedule keeps a robot's `t_delta` and window with [`Method::Adaptive`].
     Unverified {
         /// The robot.
         robot: usize,
@@ -46,14 +46,14 @@ pub enum SimulationError {
         /// Reason.
         error: ScheduleError,
     },
-    /// The median of none or of too many readings.
+    /// A median of no readings, or of too many.
     Median {
         /// The number asked for.
         median_of: u8,
     },
     /// Paths could not be found, most often because a robot has moved out of the scene's reach.
     Paths {
-        /// When, in seconds.
+        /// Time, in seconds.
         at_s: f64,
         /// Reason.
         error: PathsError,
@@ -76,21 +76,21 @@ pub enum SimulationError {
         what: &'static str,
         /// The number.
         value: f64,
-        /// The expectation.
+        /// The expected range.
         expected: &'static str,
     },
     /// The caller's own firing or filter has ended it.
     Own {
         /// The robot.
         robot: usize,
-        /// One of the two.
+        /// The part: firing or filter.
         what: &'static str,
-        /// When, in seconds.
+        /// Time, in seconds.
         at_s: f64,
         /// Reason.
         error: OwnError,
     },
-    /// A robot's ring fires by no schedule that could be changed.
+    /// A robot's ring fires by a method whose schedule cannot change.
     FixedSchedule {
         /// The robot.
         robot: usize,
@@ -108,7 +108,7 @@ pub enum SimulationError {
     },
     /// A fault has no room in the scene at a time.
     Fault {
-        /// When, in seconds.
+        /// Time, in seconds.
         at_s: f64,
         /// Reason.
         error: WorldError,
@@ -118,7 +118,7 @@ pub enum SimulationError {
 }
 
 impl SimulationError {
-    /// A ring that cannot change to another schedule.
+    /// The error of a ring that cannot change its schedule.
     pub(super) fn change(robot: usize, method: Method, error: ChangeError) -> Self {
         match error {
             ChangeError::Fixed => Self::FixedSchedule { robot, method },
@@ -126,7 +126,7 @@ impl SimulationError {
         }
     }
 
-    /// A ring that cannot be started.
+    /// The error of a ring that cannot be started.
     pub(super) fn start(robot: usize, method: Method, error: StartError) -> Self {
         match error {
             StartError::Ring(error) => Self::Ring { robot, method, error },
@@ -136,7 +136,7 @@ impl SimulationError {
         }
     }
 
-    /// Paths that cannot be found at a time in true nanoseconds.
+    /// The error of paths that cannot be found at a time in true nanoseconds.
     pub(super) fn paths(at: u64, error: PathsError) -> Self {
         if error == PathsError::Stopped {
             return Self::Stopped;

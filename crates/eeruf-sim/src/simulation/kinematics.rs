@@ -1,30 +1,29 @@
-//! Where robots are while they are simulated: as their motions have it, known from the start, or as a pilot steers them
-//! by what their sensors read.
+//! Motions of simulated robots: planned from the start, or steered by a pilot according to readings.
 
 use crate::{geometry::Moment, methods::Method, results::Readings, world::World};
 
-/// Says where robots are, and receives what their rings read. Time never goes back from call to call.
+/// Source of the robots' places, which also receives their rings' readings. Time never goes back from call to call.
 pub(crate) trait Kinematics {
     /// Returns true if anything ever moves.
     fn moves(&self) -> bool;
 
-    /// Where a robot is now, in true nanoseconds.
+    /// Motion of a robot now, in true nanoseconds.
     fn moment(&self, robot: usize, now: u64) -> Moment;
 
-    /// Time has come to `now`, in true nanoseconds. When the answer is `false` the simulation ends.
+    /// Advances the time to `now`, in true nanoseconds. If it returns `false`, the simulation ends.
     fn advance(&mut self, _now: u64) -> bool {
         true
     }
 
-    /// A reading, the last of `readings`, of a firing that happened at `fired`.
+    /// Reports a reading, the last of `readings`, of a firing at `fired`.
     fn on_reading(&mut self, _readings: &Readings, _fired: &Moment) {}
 
-    /// By which method a robot's ring fires.
+    /// The method by which a robot's ring fires.
     fn method(&self, _robot: usize, asked: Method) -> Method {
         asked
     }
 
-    /// Returns true if it matters what a robot hears.
+    /// Returns true if a robot's hearing matters.
     fn listens(&self, _robot: usize) -> bool {
         true
     }
@@ -56,7 +55,7 @@ impl<K: Kinematics> Kinematics for &mut K {
     }
 }
 
-/// Robots move as the world says.
+/// Motions as the world describes them.
 pub(crate) struct Planned<'w>(pub(crate) &'w World);
 
 impl Kinematics for Planned<'_> {

@@ -1,8 +1,7 @@
 //! [`LockStep`]: the world around a ring that runs elsewhere, on a real or an emulated microcontroller.
 //!
-//! The simulation proper calls the ring. Here the ring calls: it says which sensor sends its sound when, and learns
-//! what every sensor will hear next, as far as is known by then. A later firing may still change that: foreign sound
-//! that arrives first is what a listening sensor hears.
+//! The normal simulation calls the ring. Here the ring calls: it reports each firing, and learns what every sensor will
+//! hear next, as far as is known. A later firing may still change that, if its sound arrives first.
 
 use std::sync::Arc;
 
@@ -27,7 +26,7 @@ pub struct LockStep<'w> {
 }
 
 impl<'w> LockStep<'w> {
-    /// A world in which nothing has fired yet. The robot's `blanking` and `window` say when its sensors hear anything.
+    /// A world in which nothing has fired yet. The robot's `blanking` and `window` limit when its sensors hear.
     ///
     /// # Errors
     /// As [`simulate`](crate::simulate()).
@@ -44,8 +43,8 @@ impl<'w> LockStep<'w> {
         Ok(Self { world, channels, hearings, receivers, propagation })
     }
 
-    /// A sensor sends its sound and begins to listen, at this time in nanoseconds: not before the last call's, and not
-    /// within its window.
+    /// Fires a sensor, which then listens, at this time in nanoseconds: not before the last call's time, and not within
+    /// its window.
     ///
     /// # Errors
     /// As [`simulate`](crate::simulate()), for robots that move.
@@ -63,8 +62,8 @@ impl<'w> LockStep<'w> {
         Ok(())
     }
 
-    /// Returns the time when a sensor hears what it hears since it last fired, in nanoseconds, as far as is known;
-    /// `None` for nothing.
+    /// Returns the time in nanoseconds of the sensor's next echo since it last fired, as far as is known; `None` for
+    /// none.
     pub fn hears_at_ns(&self, sensor: usize) -> Option<u64> {
         self.receivers.get(sensor).map(Receiver::next_at).filter(|&at| at != NEVER)
     }

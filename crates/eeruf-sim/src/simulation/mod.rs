@@ -1,5 +1,5 @@
-//! Events in time: rings fire, sound travels along channels, receivers hear, and a recorder writes down the readings.
-//! It uses all rooms from `geometry` to `results`; a pilot who steers by the readings is a `Kinematics`.
+//! Events in time: rings fire, sound travels along channels, receivers hear, and a recorder stores the readings. It
+//! uses all modules from `geometry` to `results`; a pilot that steers by the readings is a `Kinematics`.
 
 mod changing;
 mod channels;

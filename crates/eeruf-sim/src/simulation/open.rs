@@ -1,4 +1,4 @@
-//! [`Simulation`]: a world that goes on step by step, under the caller's own controller or filter.
+//! [`Simulation`]: a world that is simulated step by step, under the caller's own controller or filter.
 
 use std::sync::Arc;
 
@@ -17,11 +17,11 @@ use crate::{
     world::{AnySchedule, MAX_SPEED, World},
 };
 
-/// The longest single step, in seconds: far longer than anybody waits for, so that longer is a mistake.
+/// The longest single step, in seconds: a longer one is probably a mistake.
 const MAX_STEP_S: f64 = 1e9;
 
-/// A simulation that stops after each step and goes on where it was. Its steps together give the readings of
-/// [`simulate`](crate::simulate()), bit for bit, and no more memory is needed than for one step's readings.
+/// A simulation that runs step by step. All steps together give the readings of [`simulate`](crate::simulate()), bit
+/// for bit, in the memory of one step's readings.
 ///
 /// ```
 /// use std::sync::Arc;
@@ -39,18 +39,18 @@ const MAX_STEP_S: f64 = 1e9;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Simulation {
-    /// As it was at first.
+    /// The world as it was at first.
     world: Arc<World>,
     events: EventLoop<Steered>,
     method: Method,
     robots: usize,
-    /// In true nanoseconds.
+    /// Present time in true nanoseconds.
     now: u64,
     /// Time before which all events have happened.
     happened: u64,
-    /// The world with the scene of now, and since when.
+    /// The world with its present scene, and the time since when.
     place: (Arc<World>, u64),
-    /// End of the time whose firings count.
+    /// End of the time whose firings are reported.
     end: u64,
     /// The first robot's period.
     period: u64,
@@ -58,8 +58,8 @@ pub struct Simulation {
 }
 
 impl Simulation {
-    /// A world in which nothing has fired yet; of the options, `periods` does not matter. `stop` ends a step under way
-    /// from another thread.
+    /// A simulation in which nothing has fired yet; the option `periods` is ignored. `stop` ends a running step from
+    /// another thread.
     ///
     /// # Errors
     /// As [`simulate`](crate::simulate()).
@@ -67,12 +67,12 @@ impl Simulation {
         Self::until(world, method, options, Own::new(), None, stop)
     }
 
-    /// Opens a simulation with firings or filters of the caller's [`Own`]: for the robots that have none it is as with
-    /// the method alone. A robot with its own firing, but not its own filter, is believed as the method says.
+    /// Opens a simulation with the caller's [`Own`] firing methods or filters; robots without any follow the method.
+    /// For a robot with its own firing but no filter, the method's judge is used.
     ///
     /// # Errors
-    /// As [`simulate`](crate::simulate()); something of one's own for a robot out of range, or a first period that
-    /// cannot be fired.
+    /// As [`simulate`](crate::simulate()); an own part for a robot out of range, or a first period that cannot be
+    /// fired.
     pub fn with_own(
         world: Arc<World>,
         method: Method,
@@ -83,7 +83,8 @@ impl Simulation {
         Self::until(world, method, options, own, None, stop)
     }
 
-    /// Opens a simulation with [`Own`], but firings after `options.periods` periods of the first robot do not count.
+    /// Opens a simulation with [`Own`], in which firings after `options.periods` periods of the first robot are not
+    /// reported.
     ///
     /// # Errors
     /// As [`simulate`](crate::simulate()).
@@ -116,9 +117,9 @@ impl Simulation {
         Ok(Self { world, events, method, robots, now: 0, happened: 0, place, end, period, over: false })
     }
 
-    /// A copy in the same state, which goes on alike: with the same steps it gives the same readings, bit for bit.
-    /// `stop` ends it, and not the switch of this one. None if a [`FiringMethod`](crate::FiringMethod) or a
-    /// [`Filter`](crate::Filter) of the caller's own cannot be copied.
+    /// A copy in the same state: with the same steps it gives the same readings, bit for bit. It has its own switch,
+    /// `stop`. `None` if a [`FiringMethod`](crate::FiringMethod) or a [`Filter`](crate::Filter) of the caller's own
+    /// cannot be copied.
     ///
     /// ```
     /// use std::sync::Arc;
@@ -138,9 +139,9 @@ impl Simulation {
         Some(Self { world, events: self.events.copy(stop)?, place, ..*self })
     }
 
-    /// Lets time pass, and returns what was read meanwhile: the readings of all firings whose windows have closed.
-    /// `keep_going` is called now and then with the share of all time; when its answer is `false`, the step ends with
-    /// [`SimulationError::Stopped`] and may be taken again.
+    /// Advances the time, and returns the readings of all firings whose windows have closed meanwhile. `keep_going` is
+    /// sometimes called with the passed share; if it returns `false`, the step ends with [`SimulationError::Stopped`]
+    /// and may be taken again.
     ///
     /// # Errors
     /// A time that is negative or above 10^9 s, a robot that has moved out of the scene's reach, or too little memory.
@@ -155,8 +156,8 @@ impl Simulation {
         Ok((seconds * 1e9).round() as u64)
     }
 
-    /// Like [`step`](Self::step), but no farther than to the next reading: what was read then, or nothing after that
-    /// many seconds. Readings of one moment come together.
+    /// Advances like [`step`](Self::step), but at most to the next reading: returns it, or nothing after this many
+    /// seconds. Readings of one moment come together.
     ///
     /// # Errors
     /// As [`step`](Self::step).
@@ -224,7 +225,8 @@ impl Simulation {
         self.now as f64 * 1e-9
     }
 
-    /// Lets a robot go ahead at `v_m_s` and turn at `w_rad_s`, counter-clockwise, from now on, whatever the world says.
+    /// Sets a robot's forward speed, `v_m_s`, and rate of turn, `w_rad_s`, counter-clockwise, from now on; it overrides
+    /// the world's motion.
     ///
     /// # Errors
     /// No such robot, or more than 50 m/s or rad/s.
@@ -240,8 +242,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// Puts a robot at another place, whatever is in between; it goes on at the speeds set last, or stands. Readings on
-    /// either side of that are compared as if odometry had followed the leap. Whether it stands free is not checked.
+    /// Moves a robot to another place at once; it keeps the speeds set last, or stands. Readings before and after are
+    /// compared as if odometry had followed the jump. Free space is not checked.
     ///
     /// # Errors
     /// No such robot, or a pose beyond 10^6 m.
@@ -258,8 +260,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// A robot's ring fires by another schedule from the end of its present period on, as late as keeps the intervals
-    /// of both. Readings before and after the change are not compared.
+    /// Changes a robot's schedule at the end of its present period, late enough to keep the intervals of both. Readings
+    /// before and after the change are not compared.
     ///
     /// # Errors
     /// No such robot; a method without such a schedule (immediate refiring, dither, flow, adaptive, the caller's own
@@ -291,12 +293,12 @@ impl Simulation {
         changed.map_err(|error| SimulationError::change(robot, method, error))
     }
 
-    /// Changes walls, poles and air from now on, as obstacles move. Sound that is on
-    /// its way arrives as it would have before. Whether robots stand free in it is not checked.
+    /// Changes walls, poles and air from now on, for obstacles that move. Sound in flight arrives as it would have
+    /// before. Free space around robots is not checked.
     ///
     /// # Errors
-    /// [`SimulationError::Paths`] if a sensor is within something solid or out of the scene's reach. Everything then
-    /// stays as it was; of a robot that moves it is said at its next firing.
+    /// [`SimulationError::Paths`] if a sensor is within something solid or out of the scene's reach. Nothing changes
+    /// then; for a robot that moves, the error comes at its next firing.
     ///
     /// ```
     /// use std::sync::Arc;
@@ -334,8 +336,8 @@ impl Simulation {
         Ok(self.events.kinematics().moment(robot, self.now))
     }
 
-    /// Where a robot is or was at a time, and how fast it went: at most ten seconds before it was last steered, as long
-    /// ago as you like if it was not steered, and not later than now.
+    /// Returns the pose and speed of a robot at a time up to now: at most ten seconds before it was last steered, or
+    /// any time if it never was.
     ///
     /// # Errors
     /// No such robot, or another time.
@@ -370,8 +372,8 @@ impl Simulation {
         &self.world
     }
 
-    /// The world with the scene of now, and since when, in seconds: what fires from then on is heard in it, until
-    /// [`change_scene`](Self::change_scene) gives another one.
+    /// The world with its present scene, and the time in seconds since when firings have used it; see
+    /// [`change_scene`](Self::change_scene).
     pub fn world_now(&self) -> (&Arc<World>, f64) {
         (&self.place.0, self.place.1 as f64 * 1e-9)
     }

@@ -1,12 +1,12 @@
-//! Options besides the world and the method.
+//! Options of a simulation besides the world and the method.
 
 use crate::{methods::FlowOptions, world::AnySchedule};
 
-/// Duration, seed, and what some methods need to know.
+/// Duration, seed, and settings of some methods.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Options {
-    /// Number of periods of the first robot (its `period`, whatever the method fires by), so that all methods
-    /// run for the same time. The default is 1000.
+    /// Number of periods of the first robot (of its `period`, whatever the method), so that all methods run for the
+    /// same time. The default is 1000.
     pub periods: u32,
     /// A seed other than the world's.
     pub seed: Option<u64>,
@@ -16,7 +16,7 @@ pub struct Options {
     /// Number of readings that [`Method::Median`](crate::Method::Median) takes the median of, 1 to 15. The default is
     /// 3.
     pub median_of: u8,
-    /// Settings of [`Method::Flow`](crate::Method::Flow) that differ from what the robot asks for.
+    /// Settings of [`Method::Flow`](crate::Method::Flow) that differ from the robot's.
     pub flow: FlowOptions,
 }
 

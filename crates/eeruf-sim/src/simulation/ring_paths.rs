@@ -1,4 +1,4 @@
-//! Hearing between the sensors of one robot's ring, in the very physics that a simulation of its world begins with.
+//! Paths between the sensors of one robot's ring, with the physics with which a simulation of its world begins.
 
 use super::channels::Bodies;
 use crate::{
@@ -11,8 +11,8 @@ use crate::{
 impl World {
     /// The paths between a robot's sensors at the start, with the world's physics and the bodies of the other robots.
     ///
-    /// `max_order` takes the place of the world's own; paths over poles have the world's
-    /// [`pole_order`](Self::pole_order) at most. Empty for a robot that does not exist.
+    /// `max_order` replaces the world's own; paths over poles have the world's [`pole_order`](Self::pole_order) at
+    /// most. Empty for a robot that does not exist.
     ///
     /// # Errors
     /// As [`Tracer::trace`].
@@ -35,7 +35,7 @@ impl World {
         self.ring_paths_above(robot, max_order, 1.0)
     }
 
-    /// Like [`ring_paths`](Self::ring_paths), with what is heard at this share of the amplitude that is just heard.
+    /// Finds paths like [`ring_paths`](Self::ring_paths), down to this share of the threshold amplitude.
     ///
     /// # Errors
     /// As [`Tracer::trace`].

@@ -9,7 +9,8 @@ use crate::{methods::Method, results::Readings, threads::Stop, world::World};
 /// Simulates a world under a method. The same world, method and options give the same readings, bit for bit.
 ///
 /// # Errors
-/// If a robot's ring cannot fire by the method as it should listen, or if something moves out of the scene's reach.
+/// If a robot's ring cannot fire by the method with its listening times, or if something moves out of the scene's
+/// reach.
 ///
 /// ```
 /// use eeruf_sim::*;
@@ -26,8 +27,8 @@ pub fn simulate(world: &World, method: Method, options: &Options) -> Result<Read
     simulate_while(world, method, options, |_| true)
 }
 
-/// Like [`simulate`], calling back now and then with the share of time that has passed, 0 to 1. When the answer is
-/// `false` it stops with [`SimulationError::Stopped`].
+/// Simulates like [`simulate`], and sometimes calls back with the passed share of the time, 0 to 1. If that returns
+/// `false`, it stops with [`SimulationError::Stopped`].
 ///
 /// # Errors
 /// As [`simulate`].
@@ -40,8 +41,8 @@ pub fn simulate_while(
     simulate_until(world, method, options, &Stop::default(), keep_going)
 }
 
-/// Like [`simulate_while`], and `stop` ends it as well, from another thread: also while paths are looked for, before
-/// the first event.
+/// Simulates like [`simulate_while`]; `stop` also ends it from another thread, even while paths are being computed
+/// before the first event.
 ///
 /// # Errors
 /// As [`simulate`].

@@ -1,4 +1,4 @@
-//! Robots that move as the world says until somebody steers them.
+//! Robots that follow the world's motion until they are steered.
 
 use std::{collections::VecDeque, sync::Arc};
 
@@ -8,28 +8,28 @@ use crate::{
     world::World,
 };
 
-/// For so long before a robot was last steered it is known where it was, in nanoseconds: longer than sound is heard.
+/// Time before a robot's last steering for which its places are remembered, in nanoseconds: longer than sound is heard.
 const REMEMBERED: u64 = 10_000_000_000;
 
-/// Robots that somebody steers, each from the moment on at which it was first steered.
+/// Steered robots, each from its first steering on.
 #[derive(Clone)]
 pub(super) struct Steered {
     world: Arc<World>,
     legs: Vec<Legs>,
 }
 
-/// Legs of a steered robot, the last under way.
+/// Legs of a steered robot; the last one is current.
 #[derive(Clone, Default)]
 struct Legs {
     legs: VecDeque<Leg>,
-    /// Times before this one are forgotten.
+    /// Time before which legs are forgotten.
     known_since: u64,
 }
 
-/// A constant speed and rate of turn from one moment on.
+/// A constant speed and rate of turn from a moment on.
 #[derive(Clone, Copy)]
 struct Leg {
-    /// In true nanoseconds.
+    /// Start in true nanoseconds.
     since: u64,
     pose: Pose,
     v_m_s: f64,
@@ -42,7 +42,7 @@ impl Steered {
         Self { world, legs }
     }
 
-    /// From now on a robot goes ahead at `v_m_s` and turns at `w_rad_s`.
+    /// Sets a robot's forward speed, `v_m_s`, and rate of turn, `w_rad_s`, from now on.
     pub(super) fn set(&mut self, robot: usize, now: u64, v_m_s: f64, w_rad_s: f64) {
         let pose = self.moment(robot, now).pose;
         let Legs { legs, known_since } = &mut self.legs[robot];
@@ -57,7 +57,7 @@ impl Steered {
         legs.push_back(Leg { since: now, pose, v_m_s, w_rad_s });
     }
 
-    /// From now on a robot is at another place, at the speeds that it was steered by last.
+    /// Places a robot elsewhere from now on, with the speeds set last.
     pub(super) fn place(&mut self, robot: usize, now: u64, pose: Pose) {
         let legs = &mut self.legs[robot].legs;
         let (v_m_s, w_rad_s) = legs.back().map_or((0.0, 0.0), |last| (last.v_m_s, last.w_rad_s));
@@ -74,7 +74,7 @@ impl Steered {
 }
 
 impl Leg {
-    /// Returns the motion that it leads to, on an arc or straight on.
+    /// Returns the motion at a time on this leg, along an arc or a straight line.
     fn at(&self, now: u64) -> Moment {
         let Self { since, pose, v_m_s, w_rad_s } = *self;
         let time_s = now.saturating_sub(since) as f64 * 1e-9;

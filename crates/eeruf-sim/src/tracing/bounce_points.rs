@@ -1,4 +1,4 @@
-//! Where a path runs: the points at which it bounces, for drawing and for checks.
+//! Points at which a path bounces, for drawing and for checks.
 
 use crate::{
     geometry::{Mirror, Point, alhazen, alhazen_twice},
@@ -6,8 +6,9 @@ use crate::{
 };
 
 impl Scene {
-    /// The corners of a path in the plan: source, every bounce but those at floor and ceiling, receiver. `bounces` are
-    /// those of a path between the two that was found in this scene; for others the answer is none or meaningless.
+    /// The corners of a path in the plan: source, every bounce but those at floor and ceiling, receiver. `bounces` must
+    /// be those of a path between the two points that was found in this scene; for others the result is empty or
+    /// meaningless.
     ///
     /// ```
     /// use eeruf_sim::{Air, Point, Scene, Wall};
@@ -60,7 +61,7 @@ impl Scene {
     }
 }
 
-/// Corners of paths, kept for their memory.
+/// Corners of paths, with reusable memory.
 #[derive(Debug, Default)]
 pub(super) struct Corners {
     images: Vec<Point>,
@@ -100,8 +101,8 @@ impl Corners {
     }
 }
 
-/// The parts of a path in which walls are only mirrors, from one of its ends or poles or edges, which make the sound
-/// spread again, to the next: the first and the last corner of each.
+/// The first and the last corner of each part of a path within which walls are only mirrors. Parts are separated by
+/// poles and edges, which make the sound spread again.
 pub(super) fn parts(bounces: &[Bounce]) -> impl Iterator<Item = (usize, usize)> + '_ {
     let corners = (1..).zip(bounces).filter(|(_, bounce)| !matches!(bounce, Bounce::Wall(_))).map(|(corner, _)| corner);
     let last = bounces.len() + 1;
@@ -112,7 +113,7 @@ fn image(start: Point, mirrors: &[&Mirror]) -> Point {
     mirrors.iter().fold(start, |at, mirror| mirror.image(at, mirror.distance(at)))
 }
 
-/// Appends the bounces of the way from `start` over the mirrors to `end`.
+/// Appends the bounces from `start` over the mirrors to `end`.
 fn unfold(start: Point, mirrors: &[&Mirror], end: Point, corners: &mut Vec<Point>) {
     let first = corners.len();
     let mut at = end;

@@ -17,7 +17,7 @@ use crate::{
 /// otherwise it is a critical path, one that can cause crosstalk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CriticalPath {
-    /// Index of the sensor that fires; 0 if only one does.
+    /// Index of the sensor that fires; 0 if there is only one emitter.
     pub emitter: u32,
     /// Index of the sensor that hears it.
     pub receiver: u32,
@@ -27,12 +27,11 @@ pub struct CriticalPath {
     pub amplitude: f64,
     /// Number of bounces.
     pub order: u32,
-    /// Direction in which the path leaves, in the scene's frame.
+    /// Direction of departure, in the scene's frame.
     pub departure_rad: f64,
-    /// Direction in which the receiver looks to see it, in the scene's frame.
+    /// Direction in which the receiver sees the path, in the scene's frame.
     pub arrival_rad: f64,
-    /// The elevations in radians, upwards positive, at which it leaves and at which the receiver looks; 0 in a flat
-    /// scene.
+    /// The elevations of departure and arrival in radians, upwards positive; 0 in a flat scene.
     pub elevations_rad: [f64; 2],
     /// Amplitude without the patterns.
     bare: f64,
@@ -40,28 +39,28 @@ pub struct CriticalPath {
 }
 
 impl CriticalPath {
-    /// Returns true if it causes *direct* crosstalk: straight over or by a single reflection. All others are
+    /// Returns true if it causes *direct* crosstalk: without a bounce or by a single reflection. All others are
     /// *indirect*.
     pub fn is_direct(&self) -> bool {
         self.order <= 1
     }
 }
 
-/// The question for a [`CrosstalkMatrix`]: which sensors, and what they hear.
+/// The input of a [`CrosstalkMatrix`]: the sensors and their hearing.
 #[derive(Clone, Copy, Debug)]
 pub struct CrosstalkQuery<'a> {
     /// Objects that the sound meets.
     pub scene: &'a Scene,
     /// The transducers' places and headings in the scene; each heads along its pose's x axis.
     pub sensors: &'a [Pose],
-    /// The kind of transducer: how they hear, and how they send unless others do.
+    /// The kind of transducer of the receivers, and of the emitters unless others are given.
     pub transducer: &'a Transducer,
     /// Limits up to which the sound is followed.
     pub limits: Limits,
-    /// Threshold of hearing: the [received level](Transducer::received) at or above this.
+    /// Threshold of hearing, compared with the [received level](Transducer::received).
     pub floor: f64,
-    /// The amplitude of straight paths between two different sensors, at least, relative to two that face each other as
-    /// far apart: what their mounting carries. 0 if the patterns alone decide.
+    /// The least amplitude of straight paths between two different sensors, which their mounting carries, relative to
+    /// two that face each other at the same distance; 0 if the patterns alone decide.
     pub coupling: f64,
     /// The emitters' and the sensors' heights above the floor, in metres, where the scene has a
     /// [room](Scene::room); [`DEFAULT_HEIGHT_M`](crate::DEFAULT_HEIGHT_M) for those that have none.
@@ -69,7 +68,7 @@ pub struct CrosstalkQuery<'a> {
 }
 
 impl<'a> CrosstalkQuery<'a> {
-    /// A question without direct coupling, all at the same height.
+    /// A query without direct coupling, with all sensors at the same height.
     pub const fn new(
         scene: &'a Scene,
         sensors: &'a [Pose],
@@ -103,8 +102,8 @@ impl CrosstalkMatrix {
         Self::default()
     }
 
-    /// Traces each sensor once as the emitter and keeps what is heard. Use the matrix as long as nothing moves: it does
-    /// not depend on time.
+    /// Traces each sensor once as the emitter and keeps the audible paths. The matrix is valid as long as nothing
+    /// moves.
     ///
     /// # Errors
     /// As [`Tracer::trace`]; the matrix is empty then.
@@ -112,8 +111,8 @@ impl CrosstalkMatrix {
         self.fill(tracer, query.sensors, query.transducer, query, None)
     }
 
-    /// Like [`compute`](Self::compute), but traces one emitter only, which is number 0 and need not be among the
-    /// sensors: for a world in which things move from firing to firing.
+    /// Computes the matrix like [`compute`](Self::compute) for a single emitter, which is number 0 and need not be
+    /// among the sensors: for a world in which things move from firing to firing.
     ///
     /// # Errors
     /// As [`compute`](Self::compute).
@@ -126,8 +125,8 @@ impl CrosstalkMatrix {
         self.fill(tracer, core::slice::from_ref(emitter), query.transducer, query, None)
     }
 
-    /// Like [`compute`](Self::compute), but what the query's sensors hear of other sensors, of a kind of their own: the
-    /// emitters' frequency and pattern of departure, the sensors' pattern of arrival, gain and floor.
+    /// Computes the matrix like [`compute`](Self::compute) for separate emitters of another kind, with the emitters'
+    /// frequency and pattern of departure, and the sensors' pattern of arrival, gain and floor.
     ///
     /// # Errors
     /// As [`compute`](Self::compute).
@@ -141,7 +140,7 @@ impl CrosstalkMatrix {
         self.fill(tracer, emitters, sending, query, None)
     }
 
-    /// Computes it without paths that do not matter.
+    /// Computes the matrix without paths that do not matter.
     pub(crate) fn compute_what_matters(
         &mut self,
         emitters: &[Pose],
@@ -286,8 +285,8 @@ impl CrosstalkMatrix {
         Ok(())
     }
 
-    /// Takes over the paths of another matrix between some of this ring's sensors, given by their numbers here.
-    /// [`sort`](Self::sort) comes after the last.
+    /// Adds the paths of another matrix between some of this ring's sensors, given by their numbers here. Call
+    /// [`sort`](Self::sort) after the last.
     pub(crate) fn absorb(&mut self, part: &Self, emitters: &[usize], sensors: &[usize]) {
         let before = self.bounces.len() as u32;
         self.bounces.extend_from_slice(&part.bounces);
@@ -300,7 +299,7 @@ impl CrosstalkMatrix {
         }));
     }
 
-    /// Puts what was absorbed in order, for a ring of this many sensors.
+    /// Sorts all added paths, for a ring of this many sensors.
     pub(crate) fn sort(&mut self, sensors: usize) {
         let pair = |path: &CriticalPath| path.emitter as usize * sensors + path.receiver as usize;
         self.paths.sort_by(|a, b| pair(a).cmp(&pair(b)).then(a.length_m.total_cmp(&b.length_m)));
@@ -333,7 +332,7 @@ impl CrosstalkMatrix {
         self.bounces.get(path.bounces[0] as usize..path.bounces[1] as usize).unwrap_or(&[])
     }
 
-    /// All bounces of all paths, to be numbered otherwise.
+    /// All bounces of all paths, for renumbering.
     pub(crate) fn bounces_mut(&mut self) -> &mut [Bounce] {
         &mut self.bounces
     }

@@ -1,19 +1,19 @@
-//! The ends of the paths of one question.
+//! The ends of the paths of one query.
 
 use crate::{geometry::Point, scene::Mesh};
 
-/// The triangles around a source and around each receiver, found once a question.
+/// The triangles around a source and around each receiver, found once per query.
 #[derive(Debug, Default)]
 pub(crate) struct Ends {
     /// Triangles of the source, then of each receiver.
     triangles: Vec<u32>,
-    /// The end of each one's share.
+    /// For each point, the end of its share.
     until: Vec<usize>,
     around: Vec<u32>,
 }
 
 impl Ends {
-    /// Finds them. All points must be covered by the mesh.
+    /// Finds the triangles. All points must be covered by the mesh.
     pub(crate) fn find(&mut self, mesh: &Mesh, source: Point, receivers: &[Point]) {
         self.triangles.clear();
         self.until.clear();

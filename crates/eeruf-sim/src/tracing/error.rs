@@ -1,11 +1,11 @@
-//! Errors in a question about paths. Receivers are counted from 0.
+//! Errors of a query for paths. Receivers are counted from 0.
 
 use core::fmt;
 
 use super::limits::MAX_ORDER;
 use crate::scene::Contact;
 
-/// Reason why a question about paths cannot be answered.
+/// Reason why a query for paths fails.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum PathsError {
@@ -13,7 +13,7 @@ pub enum PathsError {
     Source {
         /// The position in metres.
         at: [f64; 2],
-        /// Distance that the scene reaches from the walls, in metres.
+        /// Distance from the walls to which the scene extends, in metres.
         reach_m: f64,
     },
     /// A receiver is not a number or lies out of the scene's reach.
@@ -22,29 +22,29 @@ pub enum PathsError {
         receiver: usize,
         /// The position in metres.
         at: [f64; 2],
-        /// Distance that the scene reaches from the walls, in metres.
+        /// Distance from the walls to which the scene extends, in metres.
         reach_m: f64,
     },
     /// A source or a receiver is inside something solid.
     Inside {
         /// The position in metres.
         at: [f64; 2],
-        /// The object that it is inside of.
+        /// The object around it.
         what: Contact,
     },
     /// A source or a receiver is not between floor and ceiling.
     Height {
         /// The height in metres.
         height_m: f64,
-        /// The ceiling's, in metres.
+        /// Height of the ceiling, in metres.
         ceiling_m: f64,
     },
-    /// The order asked for is above [`MAX_ORDER`].
+    /// The requested order is above [`MAX_ORDER`].
     Order {
         /// The order asked for.
         max_order: u32,
     },
-    /// The longest path asked for is not a positive number (infinity is allowed).
+    /// The requested longest path is not a positive number (infinity is allowed).
     Length {
         /// The length asked for, in metres.
         max_length_m: f64,
@@ -54,7 +54,7 @@ pub enum PathsError {
         /// The budget that was exceeded.
         beams: usize,
     },
-    /// In a simulation: a robot's body touches something, or a sensor that is not its own.
+    /// A robot's body touches something in a simulation, or a sensor that is not its own.
     Body {
         /// The robot, counted from 0 and printed from 1.
         robot: usize,

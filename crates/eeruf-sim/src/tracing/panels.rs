@@ -1,4 +1,4 @@
-//! Reflection of walls that end: of each bounce the share that Fresnel's integral over the wall's width says.
+//! Reflection of finite walls: for each bounce, the share by Fresnel's integral over the wall's width.
 
 use super::bounce_points::parts;
 use crate::{
@@ -7,11 +7,11 @@ use crate::{
     scene::{Bounce, Scene},
 };
 
-/// The product of what the walls of a path return, relative to endless ones, by Fresnel's integral over each. Where
-/// several make a path louder, it is still no louder than one can.
+/// The product of the reflections of a path's walls relative to endless walls, by Fresnel's integral over each. If
+/// several make a path louder, the gain is limited to that of one.
 ///
-/// `corners` are those of the path, ends included. An edge of a wall limits it by how much longer the way by that edge
-/// is, with the path's other walls as mirrors: up to its ends, or to the next pole, which makes the sound spread again.
+/// `corners` are those of the path, ends included. Each edge of a wall counts by its detour, with the path's other
+/// walls as mirrors, up to the path's ends or to the next pole, which makes the sound spread again.
 pub(super) fn share_of_walls(scene: &Scene, corners: &[Point], bounces: &[Bounce], wavelength_m: f64) -> f64 {
     let mut share = 1.0;
     for (start, end) in parts(bounces) {
@@ -34,9 +34,9 @@ pub(super) fn share_of_walls(scene: &Scene, corners: &[Point], bounces: &[Bounce
 struct Turn {
     wall: u32,
     at: Point,
-    /// The way to it and from it.
+    /// The distances to the bounce and from it.
     legs: [Vector; 2],
-    /// Lengths of the ways, with the walls before and after it as mirrors.
+    /// Lengths of both parts, with the walls before and after as mirrors.
     whole_m: [f64; 2],
 }
 
@@ -60,7 +60,7 @@ impl Turn {
         panel_share(detours, false)
     }
 
-    /// Excess length of the way by an end of the wall, in metres.
+    /// Detour of the path over an end of the wall, in metres.
     fn detour_m(&self, end: Point, way: Vector) -> f64 {
         let [before_m, after_m] = self.whole_m;
         let off = end - self.at;

@@ -1,4 +1,4 @@
-//! The answer to a question about paths: flat arrays that are used again from question to question.
+//! The result of a query for paths: flat arrays that are reused from query to query.
 
 use crate::scene::Bounce;
 
@@ -13,11 +13,11 @@ pub struct Paths {
     pub order: Vec<u32>,
     /// Direction in which the path leaves the source, in (-pi, pi].
     pub departure_rad: Vec<f64>,
-    /// Direction from which it reaches the receiver: where the receiver looks to see it, in (-pi, pi].
+    /// Direction from which the path reaches the receiver, as seen by the receiver, in (-pi, pi].
     pub arrival_rad: Vec<f64>,
     /// Amplitude relative to 1 m in free air, with the transducers' patterns left out.
     pub amplitude: Vec<f64>,
-    /// Elevations at departure and arrival; empty in a flat scene.
+    /// Elevations of departure and arrival; empty in a flat scene.
     pub(super) elevations_rad: Vec<[f64; 2]>,
     /// End of each path's bounces.
     pub(super) ends: Vec<u32>,
@@ -42,8 +42,7 @@ impl Paths {
         self.bounces.get(start..end_of(path)).unwrap_or(&[])
     }
 
-    /// The elevations in radians, upwards positive, at which a path leaves the source and at which the receiver looks
-    /// to see it; 0 in a flat scene.
+    /// The elevations of a path's departure and arrival in radians, upwards positive; 0 in a flat scene.
     pub fn elevations_rad(&self, path: usize) -> [f64; 2] {
         self.elevations_rad.get(path).copied().unwrap_or_default()
     }

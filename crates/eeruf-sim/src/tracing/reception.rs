@@ -1,9 +1,9 @@
-//! Reception at a moving receiver. Sound is emitted at one place and moment; the receiver meets it where it then is,
-//! which per image is a quadratic equation.
+//! Reception at a moving receiver. Sound is emitted at one place and moment and meets the receiver at a later place: a
+//! quadratic equation for each image.
 
 use crate::geometry::{Point, Vector};
 
-/// When and after what way a moving receiver is reached.
+/// Time and path length at which a moving receiver is reached.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reception {
     /// Time since the emission, in seconds.
@@ -15,8 +15,8 @@ pub struct Reception {
 /// Solves `|receiver + velocity t - image| = c t` for the first `t >= 0`.
 ///
 /// `image` is the source mirrored in the path's walls, `receiver` the position at emission, `velocity` in m/s and
-/// `speed_of_sound` in m/s. None if the receiver outruns the sound. Which walls a path meets is taken from the position
-/// at emission: at a metre per second a receiver moves a few millimetres while the sound is on its way.
+/// `speed_of_sound` in m/s. None if the receiver outruns the sound. The walls of a path are those for the position at
+/// emission: at a metre per second a receiver moves a few millimetres while the sound is on its way.
 ///
 /// ```
 /// use eeruf_sim::{Point, Vector, reception};
@@ -37,7 +37,7 @@ pub fn reception_along(length_m: f64, arrival_rad: f64, velocity: Vector, speed_
     reception_at(length_m, [arrival_rad, 0.0], velocity, speed_of_sound)
 }
 
-/// Computes the reception of a path that comes at an azimuth and an elevation.
+/// Computes the reception of a path that arrives at an azimuth and an elevation.
 pub(crate) fn reception_at(
     length_m: f64,
     [azimuth_rad, elevation_rad]: [f64; 2],
@@ -51,7 +51,7 @@ pub(crate) fn reception_at(
     solve(length_m * length_m, -length_m * approach, velocity.norm_squared(), speed_of_sound)
 }
 
-/// `(c^2 - v^2) t^2 - 2 (d . v) t - d^2 = 0` with `d` the way from the image to the receiver.
+/// Solves `(c^2 - v^2) t^2 - 2 (d . v) t - d^2 = 0`, with `d` the vector from the image to the receiver.
 fn solve(d2: f64, d_v: f64, v2: f64, c: f64) -> Option<Reception> {
     let a = c * c - v2;
     // Subsonic receivers are always reached; written so that a NaN gives none.

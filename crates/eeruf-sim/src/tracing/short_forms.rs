@@ -1,4 +1,4 @@
-//! Short forms of the question: one source in a scene, or many sources on all cores.
+//! Short forms of the query: one source in a scene, or many sources on all cores.
 
 use rayon::prelude::*;
 
@@ -13,7 +13,7 @@ use crate::threads::on_all_cores;
 /// The paths of many sources at once, on all cores, in the order of the sources.
 ///
 /// # Errors
-/// As [`Tracer::trace`], for the first source that has one.
+/// As [`Tracer::trace`], for the first source that fails.
 pub fn paths_of_many(
     scene: &Scene,
     sources: &[Point],
@@ -29,7 +29,7 @@ pub fn paths_of_many(
 
 impl Scene {
     /// Every specular path from a source to each receiver, at [`DEFAULT_FREQUENCY_HZ`](super::DEFAULT_FREQUENCY_HZ);
-    /// see [`Tracer::trace`], which also keeps the memory between questions.
+    /// see [`Tracer::trace`], which also reuses memory between queries.
     ///
     /// # Errors
     /// As [`Tracer::trace`].

@@ -18,17 +18,17 @@ use crate::{
     threads::Stop,
 };
 
-/// The heights of a source and of receivers above the floor, in metres; what a flat scene does not ask for.
+/// The heights of a source and of receivers above the floor, in metres; ignored in a flat scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Heights<'a> {
-    /// The source's.
+    /// The source's height.
     pub source_m: f64,
-    /// The receivers', one each; [`DEFAULT_HEIGHT_M`] for those that have none.
+    /// The receivers' heights; [`DEFAULT_HEIGHT_M`] for those without one.
     pub receivers_m: &'a [f64],
 }
 
 impl Heights<'_> {
-    /// All at [`DEFAULT_HEIGHT_M`].
+    /// Heights that are all [`DEFAULT_HEIGHT_M`].
     pub const DEFAULT: Self = Self { source_m: DEFAULT_HEIGHT_M, receivers_m: &[] };
 
     /// The height of a receiver.
@@ -37,31 +37,31 @@ impl Heights<'_> {
     }
 }
 
-/// Finds paths; holds the buffers, so that asking again does not allocate. Keep one per thread.
+/// A finder of paths, with buffers, so that repeated queries do not allocate. Keep one per thread.
 #[derive(Debug)]
 pub struct Tracer {
-    /// The frequency that absorption and roughness are taken at, in Hz.
+    /// The frequency for absorption and roughness, in Hz.
     pub frequency_hz: f64,
-    /// True if poles return what a rigid cylinder does at this frequency instead of what geometric optics says; see
+    /// True if poles reflect like rigid cylinders at this frequency instead of by geometric optics; see
     /// [`pole_wave_correction`](crate::pole_wave_correction). Off by default.
     pub pole_waves: bool,
-    /// True if poles shade what lies behind them where they are thicker than the first Fresnel zone; see
+    /// True if poles thicker than the first Fresnel zone shade what lies behind them; see
     /// [`Physics::shadows`](crate::Physics::shadows). Off by default.
     pub pole_shadows: bool,
     /// True if free ends of walls and corners that jut out diffract; see [`Physics::edges`](crate::Physics::edges). Off
     /// by default.
     pub edges: bool,
-    /// True if a wall returns as much as its width does; see [`Physics::narrow_panels`](crate::Physics::narrow_panels).
+    /// True if a wall reflects according to its width; see [`Physics::narrow_panels`](crate::Physics::narrow_panels).
     /// Off by default.
     pub narrow_panels: bool,
-    /// Length of the burst, in cycles. If [`narrow_panels`](Self::narrow_panels) is on, ways by a wall's ends that
-    /// differ by less are heard as one. A [`CrosstalkMatrix`](crate::CrosstalkMatrix) sets it to the emitter's.
+    /// Length of the burst, in cycles. If [`narrow_panels`](Self::narrow_panels) is on, paths over a wall's two ends
+    /// that differ by less are heard as one. A [`CrosstalkMatrix`](crate::CrosstalkMatrix) sets it to the emitter's.
     pub burst_cycles: u32,
-    /// The most bounces of a path with a pole, at most those of all others. The default is [`MAX_ORDER`].
+    /// Largest number of bounces of a path with a pole, at most that of all other paths. The default is [`MAX_ORDER`].
     pub pole_order: u32,
-    /// Ends a question under way with [`PathsError::Stopped`].
+    /// Switch that ends a running query with [`PathsError::Stopped`].
     pub stop: Stop,
-    /// Loss in the air, for the air and the frequency asked for last.
+    /// Loss in the air, for the last air and frequency.
     loss: Option<(Air, f64, f64)>,
     ends: Ends,
     pub(super) tree: BeamTree,
@@ -72,7 +72,7 @@ pub struct Tracer {
     pub(super) corners: Corners,
 }
 
-/// A clone has the same settings and switch, and buffers of its own.
+/// A clone with the same settings and switch, and its own buffers.
 impl Clone for Tracer {
     fn clone(&self) -> Self {
         let &Self { pole_waves, pole_shadows, edges, narrow_panels, burst_cycles, pole_order, ref stop, .. } = self;
@@ -116,14 +116,14 @@ impl Tracer {
         }
     }
 
-    /// Computes what these effects say about paths: shadows, edges and narrow panels.
+    /// Enables these effects on paths: shadows, edges and narrow panels.
     pub fn follow(&mut self, physics: &Physics) {
         self.pole_shadows = physics.shadows;
         self.edges = physics.edges;
         self.narrow_panels = physics.narrow_panels;
     }
 
-    /// Largest factor by which a path may be louder than whole walls make it.
+    /// Largest factor by which a path may be louder than with endless walls.
     pub(crate) fn loudest(&self) -> f64 {
         if self.narrow_panels { LOUDEST_PANEL } else { 1.0 }
     }
@@ -131,9 +131,9 @@ impl Tracer {
     /// Writes every specular path from the source to each receiver into `paths`.
     ///
     /// A path may bounce at walls, at walls with one pole anywhere among them, or at two poles in turn. In a scene with
-    /// [floor and ceiling](Scene::room) all are [`DEFAULT_HEIGHT_M`] high; see [`trace_at`](Self::trace_at). One
+    /// [floor and ceiling](Scene::room) all are [`DEFAULT_HEIGHT_M`] high; see [`trace_at`](Self::trace_at). A path
     /// through the apex of a convex right-angle corner is found once. A receiver on top of the source does not hear the
-    /// direct path of no length.
+    /// direct path of length 0.
     ///
     /// # Errors
     /// A position that is not a number, far outside or inside something solid, an order or a length out of range, a
@@ -149,7 +149,7 @@ impl Tracer {
         self.trace_at(scene, source, receivers, Heights::DEFAULT, limits, paths)
     }
 
-    /// Like [`trace`](Self::trace), at heights of their own. In a room each path of the plan is heard straight and over
+    /// Traces like [`trace`](Self::trace), at given heights. In a room each path of the plan is heard directly and over
     /// floor and ceiling, which together count as up to [`VERTICAL_ORDER`](super::VERTICAL_ORDER) bounces of
     /// `limits.max_order`; where the scene is flat, heights do not matter.
     ///
@@ -167,7 +167,7 @@ impl Tracer {
         self.trace_audible(None, None, scene, source, receivers, heights, limits, Asked::Once, paths)
     }
 
-    /// Like [`trace`](Self::trace), without paths that are certainly too faint or do not matter.
+    /// Traces like [`trace`](Self::trace), without paths that are certainly too faint or do not matter.
     #[expect(clippy::too_many_arguments, reason = "one question")]
     pub(crate) fn trace_audible(
         &mut self,
@@ -217,8 +217,8 @@ impl Tracer {
         Ok(())
     }
 
-    /// The core alone: finds the images that each receiver sees over walls and returns how many, unsorted and with the
-    /// doubles of corners. This is what other image-source programs time as their own.
+    /// Runs the core only: finds the images that each receiver sees over walls and returns their number, unsorted and
+    /// with duplicates at corners. It is comparable with other image-source programs.
     ///
     /// # Errors
     /// As [`trace`](Self::trace).
@@ -268,17 +268,17 @@ impl Tracer {
         }
     }
 
-    /// Returns the reason why not all was found.
+    /// Returns the reason why the results are incomplete.
     fn incomplete(&self) -> PathsError {
         if self.stop.is_stopped() { PathsError::Stopped } else { PathsError::Budget { beams: MAX_BEAMS } }
     }
 
-    /// Number of beams that the last question grew.
+    /// Number of beams of the last query.
     pub fn beams(&self) -> usize {
         self.tree.beams.len()
     }
 
-    /// The natural logarithm of what the air leaves of an amplitude per metre; negative.
+    /// The natural logarithm of the air's attenuation per metre; negative.
     pub(crate) fn loss_per_m(&mut self, air: Air) -> f64 {
         match self.loss {
             Some((known, frequency_hz, loss_per_m)) if known == air && frequency_hz == self.frequency_hz => loss_per_m,
@@ -310,7 +310,7 @@ fn check(scene: &Scene, source: Point, receivers: &[Point], limits: Limits) -> R
     }
 }
 
-/// Returns true if a point is in the open: in no pole, no pillar, and not outside the room.
+/// Checks that a point is in the open: in no pole, no pillar, and not outside the room.
 fn check_free(scene: &Scene, at: Point, triangles: &[u32]) -> Result<(), PathsError> {
     let pole = scene.poles().iter().position(|pole| (at - pole.centre).norm() < pole.radius_m);
     let what = match pole {
@@ -321,7 +321,7 @@ fn check_free(scene: &Scene, at: Point, triangles: &[u32]) -> Result<(), PathsEr
     Err(PathsError::Inside { at: [at.x, at.y], what })
 }
 
-/// Checks that source and receivers are between floor and ceiling, where there are any.
+/// Checks that source and receivers are between floor and ceiling, if there are any.
 fn check_heights(scene: &Scene, receivers: usize, heights: Heights<'_>) -> Result<(), PathsError> {
     let Some(room) = scene.room() else { return Ok(()) };
     let all = core::iter::once(heights.source_m).chain((0..receivers).map(|receiver| heights.receiver_m(receiver)));

@@ -1,24 +1,24 @@
-//! Ways between two heights in a room: straight, or over floor and ceiling in turn. Each of them makes a path of the
-//! plan a path of the room.
+//! Vertical paths between two heights in a room: direct, or over floor and ceiling in turn. Each turns a path of the
+//! plan into a path of the room.
 
 use crate::scene::{Bounce, Room};
 
-/// The most bounces at floor and ceiling, a choice: a fifth is fainter than what the ceiling's 2.6 m leave of it.
+/// Largest number of bounces at floor and ceiling, a choice: with a ceiling at 2.6 m a fifth is too faint.
 pub const VERTICAL_ORDER: u32 = 4;
 
-/// One way between two heights.
+/// One vertical path between two heights.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Way {
     /// The receiver's height above the source's image in floor and ceiling, in metres.
     pub(super) rise_m: f64,
     /// The number of bounces.
     pub(super) order: u32,
-    /// The first bounce, if there is any; the others take turns.
+    /// The first bounce, if there is any; floor and ceiling alternate.
     pub(super) first: Bounce,
 }
 
 impl Way {
-    /// All ways with at most this many bounces, fewest first.
+    /// All vertical paths with at most this many bounces, fewest first.
     pub(super) fn between(room: &Room, source_m: f64, receiver_m: f64, most: u32, ways: &mut Vec<Self>) {
         ways.clear();
         ways.push(Self { rise_m: receiver_m - source_m, order: 0, first: Bounce::Floor });
@@ -40,7 +40,7 @@ impl Way {
         (0..self.order).map(move |k| if k.is_multiple_of(2) { self.first } else { other })
     }
 
-    /// Share of the amplitude that floor and ceiling leave, at a wave number and a sine of the elevation.
+    /// Share of the amplitude after floor and ceiling, at a wave number and a sine of the elevation.
     pub(super) fn reflected(self, room: &Room, wave_number: f64, sin_elevation: f64) -> f64 {
         let each = self.bounces().map(|bounce| {
             let material = if bounce == Bounce::Ceiling { &room.ceiling } else { &room.floor };
@@ -49,8 +49,7 @@ impl Way {
         each.product()
     }
 
-    /// The elevations in radians at which a path of this length in the plan leaves the source, and at which the
-    /// receiver looks to see it, upwards positive.
+    /// The elevations in radians of departure and arrival of a path with this length in the plan, upwards positive.
     pub(super) fn elevations(self, plan_m: f64) -> [f64; 2] {
         let up = libm::atan2(self.rise_m, plan_m);
         [if self.order.is_multiple_of(2) { up } else { -up }, -up]

@@ -1,5 +1,5 @@
-//! Writes what was found, in order: where each path leaves and arrives, and how loud it is; in a room each path of the
-//! plan once for each way between the heights.
+//! Writes the found paths in order, with directions and amplitudes; in a room each path of the plan once for each
+//! vertical path between the heights.
 
 use super::audibility::Audibility;
 use super::limits::{Limits, Matters};
@@ -16,12 +16,12 @@ use crate::{
 };
 use core::f64::consts::TAU;
 
-/// A path in the plan: where it goes, its loudness left out.
+/// A path in the plan, without its amplitude.
 #[derive(Clone, Copy)]
 struct Course {
     receiver: u32,
     order: u32,
-    /// Directions in which it leaves, and in which the receiver looks to see it.
+    /// Directions of departure, and of arrival as the receiver sees it.
     angles: [f64; 2],
 }
 
@@ -34,7 +34,7 @@ struct Waiting {
     angles: [f64; 2],
     elevations: [f64; 2],
     amplitude: f64,
-    /// The bounces in the plan, as a range, and what follows them.
+    /// The bounces in the plan, as a range, and the vertical path.
     bounces: [u32; 2],
     way: Way,
 }
@@ -96,8 +96,8 @@ impl Tracer {
 
     /// Writes the paths of a room.
     ///
-    /// Between floor and ceiling sound of wave number `k` at an elevation `e` goes through the plan as sound of wave
-    /// number `k cos e` does, and spreads by `cos e` more; the air takes its share of the whole length.
+    /// Between floor and ceiling, sound of wave number `k` at an elevation `e` behaves in the plan like sound of wave
+    /// number `k cos e` and spreads by `cos e` more; the air attenuates it over its whole length.
     #[expect(clippy::too_many_arguments, reason = "one question")]
     pub(super) fn write_in_room(
         &mut self,
@@ -213,7 +213,7 @@ impl Tracer {
         self.corners = turns;
     }
 
-    /// Share of the amplitude that spreading, walls, poles and edges leave in the plan.
+    /// Share of the amplitude in the plan after spreading, walls, poles and edges.
     #[inline]
     fn spread(
         &self,
@@ -241,7 +241,7 @@ impl Tracer {
         }
     }
 
-    /// The wave correction of a path's poles, if it is asked for.
+    /// The wave correction of a path's poles, if it is enabled.
     fn pole_waves(&self, path: &PolePath, bounces: &[Bounce], scene: &Scene, wave_number: f64) -> f64 {
         if !self.pole_waves {
             return 1.0;
@@ -257,7 +257,7 @@ impl Tracer {
     }
 }
 
-/// Returns true if a path meets a wall that ends somewhere.
+/// Returns true if a path meets a wall whose surface ends.
 #[inline]
 fn ends(scene: &Scene, bounces: &[Bounce]) -> bool {
     bounces.iter().any(|bounce| matches!(*bounce, Bounce::Wall(wall) if scene.extents().ends(wall)))

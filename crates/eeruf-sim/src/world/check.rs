@@ -1,4 +1,4 @@
-//! True if a robot makes sense, and stands free in its scene.
+//! Checks that a robot is valid and stands free in its scene.
 
 use eeruf_core::{MAX_PERIOD, MAX_SENSORS, Micros};
 
@@ -9,12 +9,12 @@ use super::robot::Robot;
 use crate::geometry::{Point, Pose};
 use crate::scene::{Body, MAX_COORDINATE_M, Scene};
 
-/// Returns true if a number is one, and not farther from zero than `most`.
+/// Returns true if a number is finite and its magnitude at most `most`.
 fn within(value: f64, most: f64) -> bool {
     (-most..=most).contains(&value)
 }
 
-/// Returns true if no robot stands inside another one that came before it.
+/// Checks that no robot stands inside an earlier one.
 pub(super) fn check_apart(robots: &[Robot]) -> Result<(), WorldError> {
     for (other, robot) in robots.iter().enumerate() {
         for (one, before) in robots[..other].iter().enumerate() {
@@ -32,7 +32,7 @@ pub(super) fn check_apart(robots: &[Robot]) -> Result<(), WorldError> {
     Ok(())
 }
 
-/// Returns true if two robots, one of them with a body at least, are clear of each other, their sensors too.
+/// Checks that two robots, at least one of them with a body, do not overlap, sensors included.
 fn check_bodies_apart(index: [usize; 2], robots: [&Robot; 2]) -> Result<(), WorldError> {
     let [one, other] = robots;
     if one.outline().overlaps(&one.pose, &other.outline(), &other.pose) {
@@ -49,7 +49,7 @@ fn check_bodies_apart(index: [usize; 2], robots: [&Robot; 2]) -> Result<(), Worl
     Ok(())
 }
 
-/// Returns true if a robot's sensors are between floor and ceiling, if there are any.
+/// Checks that a robot's sensors are between floor and ceiling, if there are any.
 pub(super) fn check_heights(scene: &Scene, index: usize, robot: &Robot) -> Result<(), WorldError> {
     let fail = |value, expected| Err(WorldError::Field { robot: index, field: "height_m", value, expected });
     if !robot.heights_m.is_empty() && robot.heights_m.len() != robot.sensors.len() {
@@ -64,7 +64,7 @@ pub(super) fn check_heights(scene: &Scene, index: usize, robot: &Robot) -> Resul
     Ok(())
 }
 
-/// Finds the first thing wrong with a robot.
+/// Finds the first error of a robot.
 pub(super) fn check(scene: &Scene, index: usize, robot: &Robot) -> Result<(), WorldError> {
     if robot.sensors.is_empty() || robot.sensors.len() > MAX_SENSORS {
         return Err(WorldError::Sensors { robot: index, sensors: robot.sensors.len() });

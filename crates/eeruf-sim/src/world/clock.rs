@@ -1,4 +1,4 @@
-//! A robot's clock: a free-running microsecond counter that starts anywhere, runs a little fast or slow, and wraps.
+//! A robot's clock: a free-running microsecond counter with any start, a small drift, and wraps.
 //!
 //! True time is counted in whole nanoseconds from the start of the simulation, so that the order of events never
 //! depends on rounding.
@@ -12,19 +12,18 @@ use serde::{Deserialize, Serialize};
 pub struct Clock {
     /// The counter at the start, in microseconds.
     pub offset_us: u32,
-    /// Speed above that of true time, in parts per million, -1000 to 1000.
+    /// Drift relative to true time, in parts per million, -1000 to 1000.
     pub drift_ppm: f64,
 }
 
-/// The fastest and slowest clock that makes sense, in parts per million: a choice, ten times a
-/// crystal's and about an RC oscillator's.
+/// Largest drift of a clock, in parts per million: a choice, ten times a crystal's and about an RC oscillator's.
 pub const MAX_DRIFT_PPM: f64 = 1000.0;
 
 /// A clock whose drift, a ratio of whole numbers, may change for a time.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ticker {
     offset_us: u32,
-    /// One after the other; those that are not needed never begin.
+    /// Consecutive stretches; those that are not needed never begin.
     stretches: [Stretch; 3],
 }
 
@@ -33,7 +32,7 @@ pub(crate) struct Ticker {
 struct Stretch {
     /// Start, in true nanoseconds.
     from: u64,
-    /// Time that the clock has counted by then, in nanoseconds.
+    /// Time counted by the clock until then, in nanoseconds.
     own: u64,
     /// Nanoseconds that the clock gains in a second.
     gain_ppb: i64,
@@ -56,7 +55,7 @@ impl Ticker {
         Self { offset_us: clock.offset_us, stretches: [Stretch { from: 0, own: 0, gain_ppb }, NEVER, NEVER] }
     }
 
-    /// Returns the clock drifting by this much more from one true time to another, in nanoseconds.
+    /// Returns the clock with an additional drift between two true times, in nanoseconds.
     pub(crate) fn drifting(mut self, more_ppm: f64, from: u64, to: u64) -> Self {
         let [usual, ..] = self.stretches;
         let gain_ppb = usual.gain_ppb + (more_ppm * 1000.0).round() as i64;
@@ -77,7 +76,7 @@ impl Ticker {
         stretch.counted(true_ns) / 1000
     }
 
-    /// The first true time at which the clock has counted that many microseconds.
+    /// The first true time at which the clock has counted this many microseconds.
     pub(crate) fn reaches(&self, ticks: u64) -> u64 {
         let own_ns = ticks.saturating_mul(1000);
         let stretch = self.stretches.iter().rev().find(|stretch| stretch.own <= own_ns).unwrap_or(&self.stretches[0]);
@@ -89,12 +88,12 @@ impl Ticker {
         stretch.from + ((own_ns + rate - 1) / rate) as u64
     }
 
-    /// The counter after that many ticks.
+    /// The counter after this many ticks.
     pub(crate) fn instant(&self, ticks: u64) -> Instant {
         Instant::from_micros(self.offset_us.wrapping_add(ticks as u32))
     }
 
-    /// The true length of a time that the clock measures as it usually goes.
+    /// The true length of a time measured by the clock at its usual rate.
     pub(crate) fn true_ns(&self, own_us: u32) -> u64 {
         let [usual, ..] = self.stretches;
         Self { stretches: [usual, NEVER, NEVER], ..*self }.reaches(u64::from(own_us))

@@ -9,7 +9,7 @@ use crate::scene::{Contact, SceneError};
 use crate::tracing::MAX_ORDER;
 
 /// Error of building a world. Robots are counted from 0 in code and printed from 1; walls and poles from 0, as in
-/// files. `{:#}` counts from 0 where `{}` counts from 1.
+/// files. `{:#}` counts robots from 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum WorldError {
@@ -35,7 +35,7 @@ pub enum WorldError {
         field: &'static str,
         /// The offending number.
         value: f64,
-        /// The expectation.
+        /// The expected range.
         expected: &'static str,
     },
     /// An invalid fault.
@@ -46,7 +46,7 @@ pub enum WorldError {
         field: &'static str,
         /// The offending number.
         value: f64,
-        /// The expectation.
+        /// The expected range.
         expected: &'static str,
     },
     /// A schedule for another number of sensors.
@@ -73,7 +73,7 @@ pub enum WorldError {
         robot: usize,
         /// The object that it touches.
         contact: Contact,
-        /// The radius in metres of the disc that it takes up, if it has no body.
+        /// The radius in metres of the disc that it takes up if it has no body.
         disc_m: Option<f64>,
     },
     /// A sensor that starts inside something.
@@ -82,7 +82,7 @@ pub enum WorldError {
         robot: usize,
         /// The sensor.
         sensor: usize,
-        /// The object that it is inside of.
+        /// The object around it.
         contact: Contact,
     },
     /// A sensor that starts inside another robot's body.
@@ -105,7 +105,7 @@ pub enum WorldError {
         field: &'static str,
         /// The offending number.
         value: f64,
-        /// The expectation.
+        /// The expected range.
         expected: &'static str,
     },
     /// Two robots that start one inside the other.
@@ -123,10 +123,10 @@ pub enum WorldError {
         field: &'static str,
         /// The offending number.
         value: f64,
-        /// The expectation.
+        /// The expected range.
         expected: &'static str,
     },
-    /// An order beyond what paths can be asked for.
+    /// An order above the limit for paths.
     Order {
         /// The order asked for.
         max_order: u32,

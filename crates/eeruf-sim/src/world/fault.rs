@@ -1,4 +1,4 @@
-//! Faults in a world: of sensors, their wires and lines, clocks and tables, people and doors; each for a time.
+//! Faults in a world (sensors, wires and lines, clocks and tables, people and doors), each for a time.
 
 use eeruf_files::AnySchedule;
 use serde::{Deserialize, Deserializer, Serialize};
@@ -10,17 +10,17 @@ use crate::{
     scene::{Faces, Pole, Scene, Wall},
 };
 
-/// The latest that a fault may begin or end, in seconds, unless it never does.
+/// Latest begin or end of a fault, in seconds, unless it never ends.
 const LATEST_S: f64 = 1e9;
 
-/// Something that goes wrong from one time to another.
+/// A fault from one time to another.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Fault {
-    /// The name of the number.
+    /// The kind of fault.
     pub kind: FaultKind,
-    /// The robot that has it, counted from 0.
+    /// The robot concerned, counted from 0.
     pub robot: usize,
-    /// The sensors that have it, counted from 0; empty for all.
+    /// The sensors concerned, counted from 0; empty for all.
     pub sensors: Vec<u8>,
     /// Start, in seconds.
     pub from_s: f64,
@@ -30,17 +30,17 @@ pub struct Fault {
 
 /// A kind of fault.
 ///
-/// Where a module answers by the width of a pulse, a low glitch is taken for the echo's edge and a high one for
-/// nothing. Where its line rises with the echo it is the other way round.
+/// On a module that answers by the width of a pulse, a low glitch looks like the echo's edge and a high one has no
+/// effect. On a module whose line rises with the echo it is the other way round.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum FaultKind {
-    /// This share of echoes is not heard.
+    /// This share of echoes is lost.
     Lost {
         /// 0 to 1.
         share: f64,
     },
-    /// Something else is heard while a sensor listens, at random times.
+    /// Random edges occur while a sensor listens.
     Noise {
         /// Rate, in 1/s.
         per_s: f64,
@@ -59,29 +59,29 @@ pub enum FaultKind {
         /// Delay, in us.
         us: u32,
     },
-    /// The ring fires by another table than its robot says, from the end of a period on.
+    /// The ring fires by another table than the robot's, from the end of a period on.
     OtherTable {
         /// The table.
         #[serde(deserialize_with = "boxed", serialize_with = "eeruf_files::as_file::serialize")]
         schedule: Box<AnySchedule>,
     },
-    /// The clock goes faster than it should, or slower.
+    /// The clock runs too fast or too slow.
     ClockDrift {
         /// Drift, in millionths.
         ppm: f64,
     },
-    /// There is no sensor: neither sound nor edges.
+    /// The sensor is missing: neither sound nor edges.
     Missing,
-    /// The line stays high: it rises and does not fall, and is triggered no more.
+    /// The line stays high: it does not fall, and the sensor is triggered no more.
     Stuck,
-    /// The echo line is cut: sound, and no edges.
+    /// The echo line is cut: sound, but no edges.
     Cut,
-    /// One rise of this many makes no interrupt.
+    /// One rise in this many causes no interrupt.
     LostRises {
         /// 1 for all.
         every: u32,
     },
-    /// One fall of this many makes no interrupt.
+    /// One fall in this many causes no interrupt.
     LostFalls {
         /// 1 for all.
         every: u32,
@@ -95,12 +95,12 @@ pub enum FaultKind {
     },
     /// The line is high for a moment while it should be low.
     GlitchHigh {
-        /// Time after it fell, or was triggered where it rises with the echo, in us.
+        /// Time after it fell, or, if it rises with the echo, after the trigger, in us.
         after_us: u32,
         /// Duration, in us.
         width_us: u32,
     },
-    /// A leg walks by, in a straight line from the fault's beginning to its end.
+    /// A leg walks by in a straight line during the fault.
     Leg {
         /// The radius in metres.
         radius_m: f64,
@@ -109,15 +109,15 @@ pub enum FaultKind {
         /// End point.
         to_m: [f64; 2],
     },
-    /// A door, which stands at one angle, turns from the fault's beginning to its end and then stands at the other.
+    /// A door turns from one angle to another during the fault.
     Door {
         /// The hinge.
         hinge_m: [f64; 2],
         /// The width in metres.
         length_m: f64,
-        /// The direction from the hinge before, counter-clockwise from the x axis.
+        /// The direction from the hinge before, in degrees counter-clockwise from the x axis.
         from_deg: f64,
-        /// The heading after, in degrees.
+        /// The direction from the hinge after, in degrees.
         to_deg: f64,
     },
 }
@@ -172,7 +172,7 @@ impl FaultKind {
         Self::NAMES[index]
     }
 
-    /// Returns true for what changes the scene instead of a robot.
+    /// Returns true for faults that change the scene instead of a robot.
     pub(crate) fn is_of_scene(&self) -> bool {
         matches!(self, Self::Leg { .. } | Self::Door { .. })
     }
@@ -181,16 +181,16 @@ impl FaultKind {
 /// An edge of an echo line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct LineEdge {
-    /// When, in us.
+    /// Time in us.
     pub at_us: u64,
     /// True if the line rises.
     pub high: bool,
-    /// True if its interrupt is lost: the line changes, and nothing says so.
+    /// True if its interrupt is lost: the line changes without a report.
     pub lost: bool,
 }
 
 impl Fault {
-    /// From the beginning on, of all sensors of the first robot, for ever.
+    /// A fault from the beginning on, for all sensors of the first robot, without an end.
     pub const fn new(kind: FaultKind) -> Self {
         Self { kind, robot: 0, sensors: vec![], from_s: 0.0, to_s: f64::INFINITY }
     }
@@ -207,17 +207,17 @@ impl Fault {
         Self { from_s, to_s, ..self }
     }
 
-    /// Returns true if it is there at a time, in seconds.
+    /// Returns true if the fault is active at a time, in seconds.
     pub fn is_at(&self, time_s: f64) -> bool {
         (self.from_s..self.to_s).contains(&time_s)
     }
 
-    /// Returns true if a sensor has it.
+    /// Returns true if the fault concerns a sensor.
     pub fn is_of(&self, robot: usize, sensor: u8) -> bool {
         !self.kind.is_of_scene() && self.robot == robot && (self.sensors.is_empty() || self.sensors.contains(&sensor))
     }
 
-    /// The sensor whose wire is where this one's should be.
+    /// The sensor whose wire is exchanged with this one's.
     pub(crate) fn exchanged(&self, sensor: u8) -> u8 {
         match self.sensors[..] {
             [one, other] if sensor == one => other,
@@ -226,7 +226,7 @@ impl Fault {
         }
     }
 
-    /// Objects that stand in the scene because of it at a time.
+    /// Objects that the fault puts into the scene at a time.
     pub(crate) fn obstacles(&self, time_s: f64, walls: &mut Vec<Wall>, poles: &mut Vec<Pole>) {
         let share = if self.to_s > self.from_s && self.to_s.is_finite() {
             ((time_s - self.from_s) / (self.to_s - self.from_s)).clamp(0.0, 1.0)
@@ -248,7 +248,7 @@ impl Fault {
         }
     }
 
-    /// Finds what is invalid in it.
+    /// Checks the fault.
     pub(super) fn check(&self, index: usize, robots: &[Robot]) -> Result<(), WorldError> {
         let fail = |field, value, expected| Err(WorldError::Fault { fault: index, field, value, expected });
         let Some(robot) = robots.get(self.robot) else {
@@ -302,7 +302,7 @@ impl Fault {
     }
 }
 
-/// The scene with what stands in it because of faults at a time.
+/// The scene with the objects of faults at a time.
 ///
 /// # Errors
 /// As [`Scene::new`].
@@ -314,8 +314,8 @@ pub(crate) fn scene_with(scene: &Scene, faults: &[Fault], time_s: f64) -> Result
     Ok(Scene::new(walls, poles, scene.air())?.with_room(scene.room().copied())?)
 }
 
-/// The edges of a line that answers by the width of a pulse, after a firing, the first being 1: it would rise and fall
-/// at these times. A driver should take them for what its modules do with these faults.
+/// The edges, under these faults, of a line that answers by the width of a pulse and would rise and fall at these
+/// times; firings are counted from 1. A driver should handle them like those of its modules.
 ///
 /// ```
 /// use eeruf_sim::{Fault, FaultKind, line_edges};

@@ -1,5 +1,5 @@
-//! Worlds: robots with rings, clocks and motions in a scene, how noisy it is, and the seed; from code or a TOML file.
-//! It uses `geometry`, `scene`, `acoustics` and `tracing`; nothing happens here, time passes in `simulation`.
+//! Worlds: robots with rings, clocks and motions in a scene, with noise and a seed, from code or a TOML file. It uses
+//! `geometry`, `scene`, `acoustics` and `tracing`; time passes only in `simulation`.
 
 mod check;
 mod clock;

@@ -1,8 +1,8 @@
-//! Where a robot is at a time, and how fast it goes.
+//! The pose and speed of a robot at a time.
 
 use crate::geometry::{Moment, Point, Pose, Vector};
 
-/// The fastest motion, in m/s and rad/s: a choice, beyond any robot, so that more is a mistake in the input.
+/// The fastest motion, in m/s and rad/s: a choice, beyond any robot: more is a mistake in the input.
 pub const MAX_SPEED: f64 = 50.0;
 
 /// Motion of a robot from its first pose on.
@@ -18,8 +18,8 @@ pub enum Motion {
         /// Rate of turn in rad/s, counter-clockwise.
         turn_rad_s: f64,
     },
-    /// The robot drives along straight lines from its pose through these points, heading where it goes and turning on
-    /// the spot, and stops at the last.
+    /// The robot drives in straight lines from its pose through these points, facing its direction and turning on the
+    /// spot, and stops at the last.
     Waypoints {
         /// The points, in metres.
         points: Vec<Point>,
@@ -29,7 +29,7 @@ pub enum Motion {
 }
 
 impl Motion {
-    /// Returns true if it ever moves.
+    /// Returns true if it never moves.
     pub fn is_still(&self) -> bool {
         match self {
             Self::Still => true,

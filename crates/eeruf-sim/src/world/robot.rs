@@ -1,4 +1,4 @@
-//! A robot: its transducers, where it is and how it moves, its clock, and how it fires and listens.
+//! A robot: its transducers, its place and motion, its clock, and the settings of its firing and listening.
 
 use eeruf_core::{
     EachSensor, Layout, MAX_SENSORS, Micros, Requirements, SensorLimits, SpeedOfSound, Uneven, VerifiedSchedule,
@@ -17,7 +17,7 @@ use crate::{
     scene::{Body, DEFAULT_HEIGHT_M},
 };
 
-/// The most robots in one world: a choice, beyond any use, so that more is a mistake in the input.
+/// The most robots in one world: a choice, beyond any use: more is a mistake in the input.
 pub const MAX_ROBOTS: usize = 64;
 /// A robot with its ring. Make one with [`Robot::ring`] and change what differs.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,19 +27,19 @@ pub struct Robot {
     /// The kind of transducer. Robots hear each other if their [bands overlap](Transducer::hears); those of the presets
     /// do not.
     pub transducer: Transducer,
-    /// The module of each sensor, where they are not all of [`transducer`](Self::transducer)'s kind; that is then the
-    /// first one's. Empty, as by default, where they are.
+    /// The module of each sensor, if they are not all of [`transducer`](Self::transducer)'s kind, which is then the
+    /// first one's. Empty by default.
     pub modules: Vec<Module>,
-    /// The outline: what others' sound is reflected and shaded by, and what overlaps no wall, pole or other body. Its
-    /// own sensors neither see it nor are shaded by it, but that nothing leaves or reaches them from behind. The
-    /// default is none: the robot is transparent, and stands free by the disc of [`radius_m`](Self::radius_m).
+    /// The outline, which reflects and shades others' sound and may not overlap a wall, a pole or another body. Its own
+    /// sensors neither see it nor are shaded by it, except that nothing leaves or reaches them from behind. The default
+    /// is none: the robot is transparent, and stands free by the disc of [`radius_m`](Self::radius_m).
     pub body: Option<Body>,
     /// The level in dB of the sound that its mounting carries straight from one of its sensors to another, relative to
-    /// two that face each other as far apart; the patterns of the transducers where they are louder. `None`, the
-    /// default, for the patterns alone: a mounting that carries nothing.
+    /// two that face each other at the same distance; the transducers' patterns count if they are louder. `None`, the
+    /// default, for a mounting that carries nothing.
     pub coupling_db: Option<f64>,
-    /// The heights of its sensors above the floor in metres, one each, where the scene has a [room](crate::Room).
-    /// Empty, as by default, for [`DEFAULT_HEIGHT_M`].
+    /// The heights of its sensors above the floor in metres, one each, if the scene has a [room](crate::Room). Empty by
+    /// default, for [`DEFAULT_HEIGHT_M`].
     pub heights_m: Vec<f64>,
     /// Pose of the robot at the start.
     pub pose: Pose,
@@ -47,51 +47,50 @@ pub struct Robot {
     pub motion: Motion,
     /// The clock.
     pub clock: Clock,
-    /// True if its ring is to expect other robots even where the world has none. The default is false: it knows whether
-    /// it is alone, and by [`Method::Flow`](crate::Method::Flow) believes each echo while it moves only if it is.
+    /// True if its ring must expect other robots even if the world has none. The default is false: the robot knows if
+    /// it is alone; with [`Method::Flow`](crate::Method::Flow) a moving robot then believes each echo.
     pub others: bool,
-    /// Delay before its ring begins to fire, by its own clock, after the start of the simulation.
+    /// Delay from the start of the simulation, by its own clock, before its ring begins to fire.
     pub start: Micros,
     /// The schedule that the `eeruf` methods use; `None` for the paper's own (see
     /// [`table_i_d_for`](crate::table_i_d_for)).
     pub schedule: Option<AnySchedule>,
     /// `T_p`, for all methods that do not bring their own schedule. The default is 60 ms.
     pub period: Micros,
-    /// `T_delta`: consecutive readings that differ by no more are near-identical. The default is 0.5 ms.
+    /// `T_delta`: the greatest difference of near-identical consecutive readings. The default is 0.5 ms.
     pub t_delta: Micros,
     /// `T_wind`: how long a sensor listens. The default is 36 ms, 6.2 m.
     pub window: Micros,
-    /// Deaf time of a sensor after it has fired; the shortest where they differ.
+    /// Deaf time of a sensor after it has fired; the shortest if they differ.
     pub blanking: Micros,
-    /// Deaf time of each sensor, where they differ. Empty, as by default, where they do not.
+    /// Deaf time of each sensor, if they differ. Empty by default.
     pub blankings: Vec<Micros>,
-    /// With immediate refiring, how long a sensor rests at least between its echo and its next firing. The default is
-    /// 36 ms, as long as it listens: much sooner, and it hears its last sound fade away in the room, just after
-    /// blanking, every time.
+    /// With immediate refiring, the least time from a sensor's echo to its next firing. The default is 36 ms, its
+    /// listening time: with much less it hears its last sound fade away in the room, just after blanking, every time.
     pub min_refire: Micros,
     /// Number of adjacent sensors that must not fire close together; the conventional lags repeat after as many. The
     /// default is 4.
     pub neighbours: u8,
     /// Number of consecutive readings that must agree, 2 to 8. The default is 2, as in the paper.
     pub consecutive: u8,
-    /// Window and `T_delta` of each sensor, where they are not all alike, for its own [`schedule`](Self::schedule);
+    /// Window and `T_delta` of each sensor, if they differ, for its own [`schedule`](Self::schedule);
     /// [`window`](Self::window) and [`t_delta`](Self::t_delta) are then the largest, which other methods use for all.
-    /// Empty, as by default, where they are alike.
+    /// Empty by default.
     pub limits: Vec<SensorLimits>,
-    /// The way in which a sketch fires it.
+    /// The settings of a sketch that fires it.
     pub firing: Sketch,
-    /// The time for which sound is heard after it was sent, as far as methods that fire one by one allow for it: that
-    /// of its modules where they are [given](Self::with_modules). The default is 0: no longer than sensors listen.
+    /// The time for which methods that fire one by one assume sound to be heard: that of its modules if they are
+    /// [given](Self::with_modules). The default is 0: no longer than sensors listen.
     pub audible: Micros,
-    /// The time for which it listens by flow, of a robot so fast that it cannot wait for all that its modules hear.
-    /// `None`, as by default, for its window.
+    /// The listening time with flow of a robot too fast to wait for all that its modules hear. `None`, the default, for
+    /// its window.
     pub reach: Option<Micros>,
-    /// P: the largest change of a foreign sound's path from one reading to the next, for rings that fire
-    /// by tables. `None`, as by default, for [`t_delta`](Self::t_delta).
+    /// P: the largest change of a foreign sound's path from one reading to the next, for rings that fire by tables.
+    /// `None`, the default, for [`t_delta`](Self::t_delta).
     pub path_change: Option<Micros>,
     /// Sets of sensors that its own schedule fires together, bit x for sensor x.
     pub together: Vec<u64>,
-    /// True if odometry gives the ring by how much a good reading should change from the robot's own motion.
+    /// True if odometry tells the ring the expected change of a good reading by the robot's own motion.
     pub odometry: bool,
 }
 
@@ -151,7 +150,7 @@ impl Robot {
         !self.limits.is_empty() || !self.together.is_empty()
     }
 
-    /// A schedule that rejects crosstalk as each sensor compares, with what each may do by itself.
+    /// A schedule that rejects crosstalk with each sensor's `T_delta`, and the limits of each sensor.
     ///
     /// # Errors
     /// The first condition that it violates.
@@ -162,7 +161,7 @@ impl Robot {
         self.asking(Micros::MAX, |requirements| schedule.verified_each(requirements))
     }
 
-    /// The answer to what its sensors need, with no `t_delta` above `most`.
+    /// Calls a function with the sensors' needs, with no `t_delta` above `most`.
     pub(crate) fn asking<T>(&self, most: Micros, answer: impl FnOnce(&Requirements<'_>) -> T) -> T {
         let t_delta: Vec<_> = self.limits.iter().map(|limits| limits.t_delta.min(most)).collect();
         let window: Vec<_> = self.limits.iter().map(|limits| limits.window).collect();
@@ -175,16 +174,16 @@ impl Robot {
         })
     }
 
-    /// Returns the robot with its sensors at these heights in metres, one each; where all are at [`DEFAULT_HEIGHT_M`],
-    /// none are kept, so that equal robots are equal.
+    /// Returns the robot with its sensors at these heights in metres, one each; if all are [`DEFAULT_HEIGHT_M`], none
+    /// are stored, so that equal robots compare as equal.
     #[must_use]
     pub fn with_heights(self, heights_m: Vec<f64>) -> Self {
         let usual = heights_m.len() == self.sensors.len() && heights_m.iter().all(|&it| it == DEFAULT_HEIGHT_M);
         Self { heights_m: if usual { vec![] } else { heights_m }, ..self }
     }
 
-    /// Returns the robot with these modules, one for each sensor, deaf for as long as they are, and with sound
-    /// [audible](Self::audible) for as long as they hear it at 20 degrees.
+    /// Returns the robot with these modules, one for each sensor, with their deaf times, and sound
+    /// [audible](Self::audible) for as long as they hear it at 20 degrees C.
     ///
     /// ```
     /// use eeruf_sim::{Pose, Robot, Transducer, modules::{HC_SR04, PING}};
@@ -208,8 +207,7 @@ impl Robot {
         self.with_blankings(blankings)
     }
 
-    /// Returns the robot whose sensors all have this gain, and this pattern near 90 degrees; where there is none, their
-    /// own.
+    /// Returns the robot with this gain for all sensors, and this pattern near 90 degrees; `None` keeps their own.
     #[must_use]
     pub fn with_pattern(mut self, gain: Option<GainProfile>, beam: Option<Beam>) -> Self {
         let own = self.transducer;
@@ -244,7 +242,7 @@ impl Robot {
         self.blankings.get(sensor).copied().unwrap_or(self.blanking)
     }
 
-    /// The module of a sensor: its own, or the preset of its transducer, or the nearest description of that.
+    /// The module of a sensor: its own, or the preset of its transducer, or the nearest equivalent.
     pub fn module_of(&self, sensor: usize) -> Module {
         if let Some(module) = self.modules.get(sensor) {
             return *module;
@@ -263,8 +261,8 @@ impl Robot {
         (0..self.sensors.len()).map(|sensor| Micros::new(self.module_of(sensor).rest_us)).max().unwrap_or_default()
     }
 
-    /// Returns the robot as it fires by flow. One that has a [`reach`](Self::reach) keeps quiet for no longer than
-    /// sound from there has a tail, and so believes no single echo, be it alone or not.
+    /// Returns the robot with its settings for flow. With a [`reach`](Self::reach), its quiet lasts no longer than that
+    /// and the tail, so it believes no single echo, alone or not.
     #[must_use]
     pub fn by_flow(self) -> Self {
         let Some(reach) = self.reach.filter(|&reach| reach < self.window) else { return self };
@@ -277,7 +275,7 @@ impl Robot {
         self.heights_m.get(sensor).copied().unwrap_or(DEFAULT_HEIGHT_M)
     }
 
-    /// The amplitude that [`coupling_db`](Self::coupling_db) means; 0 for none.
+    /// The amplitude for [`coupling_db`](Self::coupling_db); 0 for none.
     pub(crate) fn coupling(&self) -> f64 {
         self.coupling_db.map_or(0.0, |db| libm::exp10(db / 20.0))
     }
@@ -287,14 +285,14 @@ impl Robot {
         self.sensors.iter().map(|sensor| offset(sensor).norm()).fold(0.0, f64::max)
     }
 
-    /// The outline that must stand free: its body, or without one the disc that holds all its sensors.
+    /// The outline that must be free: its body, or without one the disc that holds all its sensors.
     pub fn outline(&self) -> Body {
         // A body without extent still stands somewhere.
         self.body.unwrap_or(Body::Disc(self.radius_m().max(1e-6)))
     }
 }
 
-/// Where a sensor stands relative to its robot's middle.
+/// The place of a sensor relative to its robot's middle.
 pub(crate) fn offset(sensor: &Pose) -> Vector {
     sensor.translation.vector
 }

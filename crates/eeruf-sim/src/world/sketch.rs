@@ -1,30 +1,29 @@
-//! [`Sketch`]: how a ring is fired by the sketches that people write, and by modules that fire themselves.
+//! [`Sketch`]: today's ways of firing a ring, by sketches and by modules that fire themselves.
 
 use eeruf_core::{MAX_PERIOD, Micros};
 use serde::{Deserialize, Serialize};
 
-/// The settings of the [methods](crate::Method::is_sketch) that fire as rings are fired today: `[firing]` in scene
-/// files.
+/// The settings of the [methods](crate::Method::is_sketch) that imitate today's rings: `[firing]` in scene files.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sketch {
-    /// Longest wait for a sensor; `None` for as long as it listens.
+    /// Longest wait for a sensor; `None` for its listening time.
     pub timeout: Option<Micros>,
     /// The time from an echo, or from the time-out, to the next trigger.
     pub pause: Micros,
-    /// The least time from one trigger to the next in turn, as that of a ping timer. Of modules that run freely, their
+    /// The least time from one trigger to the next in turn, like that of a ping timer; for free-running modules their
     /// cycle, if it is longer than their rest.
     pub turn: Micros,
-    /// The least time from one trigger of a sensor to its next. `None` for nothing, and on a sync line and for modules
-    /// that run freely for what their modules need.
+    /// The least time from one trigger of a sensor to its next. `None` for the modules' own rest with a sync line and
+    /// for free-running modules, otherwise for 0.
     pub rest: Option<Micros>,
     /// The sensors of each array, in the order in which they fire. Empty for two halves of the ring.
     pub arrays: Vec<Vec<u8>>,
-    /// The sensors that fire together, group after group. Empty for those as far apart as the robot's `neighbours`.
+    /// The sensors that fire together, group after group. Empty for groups as far apart as the robot's `neighbours`.
     pub groups: Vec<Vec<u8>>,
     /// The number of consecutive readings that must agree: 1 to believe each as it comes, up to 8.
     pub consecutive: u8,
-    /// The largest deviation of the cycle of a module that runs freely, in millionths; each module has its own. The
-    /// default is a choice: 5000, that of a ceramic resonator.
+    /// The largest deviation of a free-running module's cycle, in millionths; each module has its own. The default is a
+    /// choice: 5000, that of a ceramic resonator.
     pub drift_ppm: f64,
     /// The firing times of the method `table`; `None` for the robot's own schedule.
     pub table: Option<FiringTable>,
@@ -59,8 +58,8 @@ pub struct FiringTable {
 }
 
 impl Sketch {
-    /// Finds the first setting that does not suit this many sensors with this window: its name in files, its value, and
-    /// what is expected.
+    /// Finds the first setting that is invalid for this many sensors with this window: its name in files, its value,
+    /// and the expectation.
     pub(super) fn check(&self, sensors: usize, window: Micros) -> Result<(), (&'static str, f64, &'static str)> {
         let us = |time: Micros| f64::from(time.as_micros());
         if let Some(timeout) = self.timeout.filter(|&timeout| timeout == Micros::ZERO || timeout > window) {
@@ -111,5 +110,5 @@ impl Sketch {
     }
 }
 
-/// The longest wait of a sketch.
+/// The longest time of a sketch's setting.
 const MAX_SKETCH: Micros = Micros::from_millis(10_000);

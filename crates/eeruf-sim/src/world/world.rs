@@ -1,5 +1,5 @@
-//! A world: a scene with robots in it, how noisy it is, and the seed that decides all that is random. Checked once, so
-//! that a simulation has nothing left to refuse but what a method asks for.
+//! A world: a scene with robots, noise, and the seed of all that is random. It is checked once, so that a simulation
+//! can fail only because of the method.
 
 use eeruf_core::{Micros, Requirements};
 
@@ -15,12 +15,11 @@ use crate::{
     tracing::MAX_ORDER,
 };
 
-/// The highest order that a world follows sound to, unless another is asked for: the order at which Set I is
-/// evaluated.
+/// The default order to which a world follows sound: that of Set I.
 pub const DEFAULT_ORDER: u32 = 6;
-/// At how many steps of its way a door or a leg is tried before a simulation begins.
+/// Number of steps on the way of a door or a leg that are checked before a simulation begins.
 const PLACES_TRIED: u32 = 16;
-/// The longest time for which a path may fade in the same way, in seconds: a choice, as good as for ever.
+/// The longest time for which a path may fade in the same way, in seconds: a choice, practically infinite.
 const MAX_FADING_TIME_S: f64 = 3600.0;
 
 /// A scene, robots, noise, physics and a seed.
@@ -84,8 +83,8 @@ impl World {
         Ok(Self { max_order, ..self })
     }
 
-    /// Returns the world with sound that meets a pole followed up to this order only, at most that of all other sound.
-    /// Such sound is faint, and by far the most expensive to follow.
+    /// Returns the world in which sound that meets a pole is followed only up to this order, at most that of all other
+    /// sound. Such sound is faint, and by far the most expensive to follow.
     ///
     /// # Errors
     /// [`WorldError::Order`] above [`MAX_ORDER`].
@@ -129,11 +128,11 @@ impl World {
         Self { scene, ..self.clone() }
     }
 
-    /// Returns the world in which these things go wrong.
+    /// Returns the world with these faults.
     ///
     /// # Errors
-    /// [`WorldError::Fault`] for an invalid one, [`WorldError`] for a door or a leg that the scene has no room
-    /// for somewhere on its way.
+    /// [`WorldError::Fault`] for an invalid one, [`WorldError`] for a door or a leg that the scene has no room for
+    /// somewhere on its way.
     pub fn with_faults(self, faults: Vec<Fault>) -> Result<Self, WorldError> {
         faults.iter().enumerate().try_for_each(|(index, fault)| fault.check(index, &self.robots))?;
         for robot in 0..self.robots.len() {
@@ -153,7 +152,7 @@ impl World {
         Ok(Self { faults, ..self })
     }
 
-    /// Faults.
+    /// The faults.
     pub fn faults(&self) -> &[Fault] {
         &self.faults
     }
@@ -168,7 +167,7 @@ impl World {
         &self.robots
     }
 
-    /// Robots, from 0, whose `t_delta` is above what their schedules reject, each with a warning that says so.
+    /// Robots, from 0, whose `t_delta` is too large for their schedules, each with a warning.
     pub fn doubts(&self) -> Vec<(usize, String)> {
         let nothing_asked = Requirements::new(Micros::ZERO);
         let doubt = |(index, robot): (usize, &Robot)| {

@@ -4,13 +4,13 @@ use std::path::Path;
 
 use eeruf_sim::*;
 
-/// One of the field's two scenes, of two modules 10 cm apart before a wall.
+/// One of the two field cases: two modules 10 cm apart before a wall.
 fn field_case(name: &str) -> World {
     World::from_toml(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/field-cases").join(name)).unwrap()
 }
 
-/// The share of wrong readings in per cent, with this beam and mounting; each sensor but a middle one turned in by an
-/// angle, a third one between the two if asked for.
+/// The share of wrong readings in percent, with this beam and mounting; each sensor except a middle one is turned
+/// inwards by an angle, and a third one between the two is optional.
 fn wrong_percent(beam: Beam, coupling_db: Option<f64>, turned_deg: f64, sensors: usize) -> f64 {
     let flat = field_case("bumper-flat.toml");
     let robot = &flat.robots()[0];

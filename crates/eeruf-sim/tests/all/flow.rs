@@ -1,4 +1,4 @@
-//! Flow beside one by one in rooms: what must hold of it whatever the rooms.
+//! Flow compared with one by one in rooms: properties that hold whatever the rooms.
 
 use std::f64::consts::TAU;
 

@@ -1,5 +1,5 @@
 //! A second opinion on the paths: plain image sources over all wall sequences, followed back from the receiver with
-//! parry's ray casts. It shares no code with the beam tree; it is slow and says when it cannot tell.
+//! parry's ray casts. It shares no code with the beam tree; it is slow, and reports doubtful cases.
 
 use crate::random::{free_point, scene};
 use eeruf_sim::{Air, Bounce, Faces, Point, Pole, Random, Scene, Wall};
@@ -9,7 +9,7 @@ use parry2d_f64::{
     shape::Segment,
 };
 
-/// A path is doubtful when walls longer or shorter by this much would change the answer. Parry's hit points are good to
+/// Change of the walls' length that must not change the answer, or a path is doubtful. Parry's hit points are good to
 /// 1e-7 m, and rays aimed at corners may leak.
 const MARGIN_M: f64 = 1e-6;
 
@@ -36,7 +36,7 @@ fn grown(wall: &Wall, by: f64) -> Segment {
     Segment::new((wall.from - along).coords.into(), (wall.to + along).coords.into())
 }
 
-/// Returns true if the straight way is free of all walls but the two that it connects.
+/// Returns true if the segment crosses no wall except the two that it connects.
 fn free(walls: &[Wall], from: Point, to: Point, skip: [Option<usize>; 2]) -> Answer {
     let way = to - from;
     let length = way.norm();
@@ -108,7 +108,7 @@ fn assert_agree(mut ours: Sequences, mut expected: Sequences, setting: impl Fn()
     ours.len()
 }
 
-/// All paths of a receiver as (sequence, length), or none when one of them is doubtful.
+/// All paths of a receiver as (sequence, length); `None` if one of them is doubtful.
 fn image_sources(scene: &Scene, source: Point, receiver: Point, max_order: usize) -> Option<Sequences> {
     let walls = scene.walls();
     let mut found = Vec::new();

@@ -19,8 +19,8 @@ fn before_a_wall([distance_m, height_m, heading_rad]: [f64; 3], gain: GainProfil
     World::new(scene, vec![robot], Noise::NONE).unwrap().with_physics(physics).unwrap()
 }
 
-/// Travelling time in seconds and amplitude over the threshold of each image of the sensor in wall, floor and ceiling
-/// that is not farther than 10 dB below the threshold.
+/// Travelling time in seconds, and amplitude relative to the threshold, of each image of the sensor in wall, floor and
+/// ceiling that is at most 10 dB below the threshold.
 fn images([distance_m, height_m, heading_rad]: [f64; 3]) -> Vec<(f64, f64)> {
     let air = Air::default();
     let (c, ceiling_m) = (air.speed_of_sound(), Room::DEFAULT.ceiling_m);
@@ -53,7 +53,7 @@ fn images([distance_m, height_m, heading_rad]: [f64; 3]) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// When the sum of all waves crosses the threshold, in seconds, by its real and its imaginary part at each 50 ns.
+/// Time in seconds at which the sum of all waves crosses the threshold, from its real and imaginary parts every 50 ns.
 fn heard_at(sounds: &[(f64, f64)], threshold: impl Fn(f64) -> f64) -> Option<f64> {
     let burst_s = MODULE.burst_s();
     let level = |time_s: f64| {
@@ -137,7 +137,7 @@ fn lone_echo_reads_as_without_interference() {
     }
 }
 
-/// The share of first echoes that another follows within a burst, no more than 10 dB fainter, in percent.
+/// The percentage of first echoes that are followed within a burst by another at most 10 dB fainter.
 fn overlapping(room: Option<f64>) -> f64 {
     let (mut firsts, mut with_another) = (0, 0);
     for number in 0..60 {

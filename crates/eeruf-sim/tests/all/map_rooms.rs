@@ -1,4 +1,4 @@
-//! Places in maps: free, by their numbers, and with way to drive.
+//! Places in maps: in free space, reproducible by number, and with room to drive.
 
 use core::f64::consts::TAU;
 

@@ -1,4 +1,4 @@
-//! The measure of what a robot needs: controls that must rank as they do, whatever the rooms.
+//! The measure of what a robot needs, checked by controls whose rank is known in every room.
 
 use std::f64::consts::TAU;
 

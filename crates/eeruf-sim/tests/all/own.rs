@@ -1,4 +1,4 @@
-//! Firings and filters of one's own, schedules and scenes that change under way.
+//! Own firing methods and filters, schedules and scenes that change during a simulation.
 
 use std::sync::Arc;
 
@@ -35,7 +35,7 @@ fn columns(readings: &Readings) -> Vec<Row> {
     (0..readings.len()).map(row).collect()
 }
 
-/// Fires by a schedule of two phases.
+/// A firing method with a schedule of two phases.
 struct ByTable(AnySchedule);
 
 impl FiringMethod for ByTable {
@@ -63,7 +63,7 @@ fn paper<const E: usize>() -> Paper<E> {
     Paper(EchoFilter::new(Micros::new(500), 2).unwrap())
 }
 
-/// Believes the median of three. Of two of the same time it takes the one that the method takes.
+/// A filter that believes the median of three readings, and of two equal ones the same as the method.
 #[derive(Default)]
 struct Median(std::collections::HashMap<u8, ([Option<Echo>; 3], usize)>);
 
@@ -134,7 +134,7 @@ fn own_code_is_of_one_robot() {
     let beside = Robot { pose: Pose::new(Vector::new(0.4, 0.3), 0.9), ..robot() };
     let here = Robot { pose: Pose::new(Vector::new(-0.4, -0.3), 0.2), ..robot() };
     let world = alcove(vec![here, beside]);
-    /// Believes nothing.
+    /// A filter that believes nothing.
     struct Sceptic;
     impl Filter for Sceptic {
         fn push(&mut self, firing: &FiredReading<'_>) -> Result<Filtered, OwnError> {
@@ -151,7 +151,7 @@ fn own_code_is_of_one_robot() {
 // An echo is distinguished from crosstalk also where a filter gives it another time.
 #[test]
 fn echo_differs_from_crosstalk_under_filter_times() {
-    /// Gives every echo two microseconds late.
+    /// A filter that delays every echo by two microseconds.
     struct Late;
     impl Filter for Late {
         fn push(&mut self, firing: &FiredReading<'_>) -> Result<Filtered, OwnError> {
@@ -172,7 +172,7 @@ fn echo_differs_from_crosstalk_under_filter_times() {
 // A period that cannot be fired ends the simulation with the reason.
 #[test]
 fn unfireable_period_ends_the_simulation() {
-    /// Fires well for three periods, and then otherwise.
+    /// A firing method that is valid for three periods, and then invalid.
     struct Then(FiringPeriod);
     impl FiringMethod for Then {
         fn plan(&mut self, period: u32) -> Result<FiringPeriod, OwnError> {
@@ -228,7 +228,7 @@ fn errors_of_own_code_come_out_of_the_step() {
     let after = simulation.step(1.0, |_| true).unwrap();
     let whole = open(&world, Method::Conventional, Own::new()).unwrap().step(1.0, |_| true).unwrap();
     assert_eq!(after.len(), whole.len() - 1, "the reading that was not judged is lost, and no other");
-    /// Plans nothing at all.
+    /// A firing method that plans nothing.
     struct Never;
     impl FiringMethod for Never {
         fn plan(&mut self, _period: u32) -> Result<FiringPeriod, OwnError> {

@@ -1,4 +1,4 @@
-//! Reflection of narrow panels: against Kirchhoff's integral, backwards, cut in pieces, and whether all of it is found.
+//! Reflection of narrow panels: Kirchhoff's integral, reciprocity, panels cut in pieces, and completeness.
 
 use crate::random::{Draw as _, free_point, scene};
 use eeruf_sim::*;
@@ -27,7 +27,7 @@ fn panel(from: [f64; 2], to: [f64; 2]) -> Wall {
     Wall::new(from[0], from[1], to[0], to[1]).with_faces(Faces::Both)
 }
 
-/// Amplitude that spreading alone leaves after this length.
+/// Amplitude after this length by spreading alone.
 fn free(length_m: f64) -> f64 {
     10f64.powf(-Air::default().absorption_db_per_m(49_400.0) * length_m / 20.0) / length_m
 }

@@ -1,4 +1,4 @@
-//! Hearing between robots, bodies, and fading that does not depend on who asks.
+//! Hearing between robots, bodies, and fading that does not depend on the order of queries.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -65,14 +65,14 @@ fn path_has_senders_and_listeners_patterns() {
     assert!((matrix.paths()[0].amplitude / (patterns * air) - 1.0).abs() < 1e-12);
 }
 
-/// Reading of the first robot's sensor alone, in metres to the thing that it sees.
+/// Reading of the first robot's sensor alone, as the distance in metres.
 fn sees(world: &World) -> f64 {
     let readings = run(world);
     let first = (0..readings.len()).find(|&k| readings.robot[k] == 0).unwrap();
     readings.reference_us[first] * 1e-6 * C / 2.0
 }
 
-/// Under `plain`, in which the distance to a wall can be read off the echo's time.
+/// A sensor before a wall under `plain`, where the echo's time gives the distance.
 fn before_a_wall(robots: Vec<Robot>) -> Result<World, WorldError> {
     let wall = Wall::new(4.0, -5.0, 4.0, 5.0).with_faces(Faces::Both);
     World::new(Scene::new(vec![wall], vec![], Air::default())?, robots, Noise::NONE)?.with_physics(Physics::PLAIN)

@@ -1,4 +1,4 @@
-//! Laws that must hold for every scene: reciprocity, motion, scale, and what changing walls or the order may do.
+//! Laws for every scene: reciprocity, motion, scale, and the effects of changes to walls or order.
 
 use crate::random::{free_point, scene};
 use eeruf_sim::{Air, Bounce, Faces, Paths, Point, Pole, Pose, Random, Scene, Vector, Wall};
@@ -196,7 +196,7 @@ fn a_rectangle_has_one_path_per_image_even_on_a_lattice() {
     }
 }
 
-/// Corners of each path: equal angles at walls and poles, and the length that was claimed.
+/// Checks the corners of each path: equal angles at walls and poles, and the stated length.
 #[test]
 fn every_path_obeys_the_law_of_reflection_at_each_bounce() {
     let mut bounced = 0;

@@ -1,4 +1,4 @@
-//! Draws of several tests: points, rooms and scenes, from a raw state of the simulator's own generator.
+//! Random draws for several tests: points, rooms and scenes, from a raw state of the simulator's own generator.
 
 use eeruf_sim::{Air, Faces, Point, Random, Scene, Wall};
 

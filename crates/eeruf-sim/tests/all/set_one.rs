@@ -1,4 +1,4 @@
-//! Set I over many geometries, as `eeruf experiment set-one` runs it.
+//! Set I over many geometries, as run by `eeruf lab experiment set-one`.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 

@@ -1,4 +1,4 @@
-//! Set II over many courses, as `eeruf experiment set-two` runs it.
+//! Set II over many courses, as run by `eeruf lab experiment set-two`.
 
 use std::sync::atomic::{AtomicUsize, Ordering};
 

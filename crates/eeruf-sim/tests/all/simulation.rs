@@ -8,7 +8,7 @@ use eeruf_sim::*;
 
 const C: f64 = 343.2;
 
-/// Under `plain`, whose times have closed forms: an echo is heard when it begins.
+/// A world under `plain`, whose times have closed forms: an echo is heard when it begins.
 fn world(walls: Vec<Wall>, robots: Vec<Robot>, noise: Noise) -> World {
     let world = World::new(Scene::new(walls, vec![], Air::default()).unwrap(), robots, noise);
     world.and_then(|world| world.with_physics(Physics::PLAIN)).unwrap()

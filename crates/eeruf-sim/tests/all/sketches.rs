@@ -1,4 +1,4 @@
-//! Rings that fire as sketches and modules do: who fires when, and what is believed.
+//! Rings fired like sketches and modules: the order of firings, and which readings are believed.
 
 use std::path::Path;
 
@@ -36,7 +36,7 @@ fn firings(readings: &Readings) -> Vec<(u64, u8)> {
     firings
 }
 
-/// The times from each firing to the next, of those of some sensors.
+/// The times between consecutive firings of some sensors.
 fn steps(readings: &Readings, of: &[u8]) -> Vec<u64> {
     let own: Vec<_> = firings(readings).into_iter().filter(|(_, sensor)| of.contains(sensor)).collect();
     own.windows(2).map(|pair| pair[1].0 - pair[0].0).collect()

@@ -1,4 +1,4 @@
-//! World files: those that are shipped work, and bad ones get one clear line.
+//! World files: all shipped ones work, and invalid ones cause one clear line.
 
 use std::path::Path;
 

@@ -1,9 +1,9 @@
-//! Intervals by rooms drawn again.
+//! Confidence intervals by bootstrap over rooms.
 
 use super::trial::NEVER_S;
 use crate::{results::quantile, world::Random};
 
-/// Numbers of times that rooms are drawn again.
+/// Number of bootstrap samples.
 const TIMES: u64 = 2000;
 
 /// An estimate with its 95 % interval.
@@ -15,8 +15,8 @@ pub struct Estimate {
     pub interval_95: [f64; 2],
 }
 
-/// Rooms drawn again: for each time how often each room was drawn. Rooms of one set are drawn together, whatever the
-/// condition, so that ratios are paired.
+/// Bootstrap samples: for each sample, how often each room was drawn. All conditions of a set of rooms share the
+/// samples, so that ratios are paired.
 #[derive(Debug)]
 pub(super) struct Bootstrap(Vec<Vec<u16>>);
 
@@ -33,7 +33,7 @@ impl Bootstrap {
         Self((0..TIMES).map(again).collect())
     }
 
-    /// A figure of all rooms once, and of those drawn each time.
+    /// The values of a figure for all rooms, and for each sample.
     pub(super) fn figures(&self, of: impl Fn(&[u16]) -> f64) -> Vec<f64> {
         let once = self.0.first().map_or(0, Vec::len);
         core::iter::once(vec![1; once]).chain(self.0.iter().cloned()).map(|counts| of(&counts)).collect()
@@ -41,14 +41,14 @@ impl Bootstrap {
 }
 
 impl Estimate {
-    /// From a figure of all rooms and those of rooms drawn again.
+    /// An estimate from the value for all rooms and those for the samples.
     pub(super) fn of(figures: &[f64]) -> Self {
         let (value, mut again) =
             (figures.first().copied().unwrap_or(f64::NAN), figures.get(1..).unwrap_or(&[]).to_vec());
         Self { value, interval_95: [0.025, 0.975].map(|share| quantile(&mut again, share)) }
     }
 
-    /// Returns true if it may as well be this value.
+    /// Returns true if the interval contains this value.
     pub fn holds(&self, value: f64) -> bool {
         (self.interval_95[0]..=self.interval_95[1]).contains(&value)
     }
@@ -59,19 +59,19 @@ impl Estimate {
 pub(super) struct Latencies(Vec<(f64, usize)>);
 
 impl Latencies {
-    /// Takes all rooms in order; a room without a thing has none.
+    /// Latencies of all rooms in order; a room without a thing has none.
     pub(super) fn new(latencies_ms: impl Iterator<Item = f64>) -> Self {
         let mut sorted: Vec<_> = latencies_ms.zip(0..).filter(|(latency, _)| !latency.is_nan()).collect();
         sorted.sort_by(|one, other| one.0.total_cmp(&other.0));
         Self(sorted)
     }
 
-    /// The 95th percentile of rooms drawn so often; infinite where more than 5 % are never seen.
+    /// The 95th percentile with these weights of rooms; infinite if more than 5 % are never seen.
     pub(super) fn t95_ms(&self, counts: &[u16]) -> f64 {
         self.within_ms(0.95, counts)
     }
 
-    /// The time in which a share of things is seen, in rooms drawn so often.
+    /// The time within which a share of things is seen, with these weights of rooms.
     pub(super) fn within_ms(&self, share: f64, counts: &[u16]) -> f64 {
         let count = |&(_, room): &(f64, usize)| counts.get(room).map_or(0, |&count| u32::from(count));
         let all: u32 = self.0.iter().map(count).sum();
@@ -95,8 +95,8 @@ impl Latencies {
     }
 }
 
-/// A 95th percentile as it counts in a cost: what is never seen counts as seen after 5 s, so that two ways that both
-/// miss one thing in twenty are alike.
+/// A 95th percentile as it counts in a cost: things never seen count as seen after 5 s, so that two ways that both miss
+/// one in twenty are equal.
 pub(super) fn capped_ms(t95_ms: f64) -> f64 {
     t95_ms.min(1e3 * NEVER_S)
 }

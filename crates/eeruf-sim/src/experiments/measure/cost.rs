@@ -1,4 +1,4 @@
-//! Figures of ways in cells, the setting that each is used with, its cost, and the way to recommend.
+//! Figures of ways under conditions, their settings, their costs, and the way to recommend.
 
 use serde::Serialize;
 
@@ -11,7 +11,7 @@ use super::ways::{Family, MeasuredWay};
 
 /// The most false stops a minute at which ways are compared.
 pub const ONE_A_MINUTE: f64 = 1.0;
-/// From this number of rooms on a difference above this share is no draw.
+/// Number of rooms from which on a difference above this share is no draw.
 const MANY_ROOMS: usize = 400;
 const NO_DRAW: f64 = 0.2;
 
@@ -24,17 +24,17 @@ pub struct Point {
     pub setting: Setting,
 }
 
-/// The point at which a family is used under a condition, from rooms on which nothing is reported.
+/// The setting at which a family is used under a condition, chosen in rooms that reports do not use.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Operating {
     /// The least t95 with no more false stops than asked for.
     At(Point),
-    /// No point has as few; this one has the fewest.
+    /// No setting has as few; this one has the fewest.
     None(Point),
 }
 
 impl Operating {
-    /// The point, whether it keeps to what was asked for or not.
+    /// The setting, whether or not it has few enough false stops.
     pub fn point(self) -> Point {
         let (Self::At(point) | Self::None(point)) = self;
         point
@@ -69,7 +69,7 @@ pub struct Cell {
 }
 
 impl Under {
-    /// The settings of some of the ways that can fire the ring. A median is for one by one alone.
+    /// The settings of these ways that can fire the ring. Only one by one has a median.
     fn points(&self, measured: &Measured, ways: impl Fn(usize) -> bool) -> Vec<Point> {
         let of_way = |(way, of): (usize, &MeasuredWay)| {
             let fits = |it: &Setting| of.family == Family::OneByOne || *it != Setting::Median;
@@ -91,9 +91,9 @@ impl Under {
         (latencies.t95_ms(&vec![1; sights.len()]), rate(sights, &vec![1; sights.len()]))
     }
 
-    /// The point at which some of the ways are used with at most this many false stops a minute: where a way's most
-    /// eager setting keeps to that, that one; else its setting of the least t95 that does; of all its ways the one of
-    /// the least t95. None if no way of them can fire the ring.
+    /// The point at which some ways are used with at most this many false stops a minute. For each way it is the most
+    /// eager setting if that has few enough, else the setting with the least t95 that has; among the ways it is the one
+    /// with the least t95. `None` if none of them can fire the ring.
     pub fn operating(&self, measured: &Measured, ways: impl Fn(usize) -> bool, most_per_min: f64) -> Option<Operating> {
         let points = self.points(measured, ways);
         let figures: Vec<_> = points.iter().map(|&point| (point, self.t95_and_rate(point))).collect();
@@ -138,7 +138,7 @@ impl Under {
     }
 }
 
-/// False stops a minute in rooms drawn so often.
+/// False stops a minute with these weights of rooms.
 fn rate(sights: &[Sight], counts: &[u16]) -> f64 {
     let sum = |of: fn(&Sight) -> f64| -> f64 {
         sights.iter().zip(counts).map(|(sight, &count)| of(sight) * f64::from(count)).sum()
@@ -149,10 +149,10 @@ fn rate(sights: &[Sight], counts: &[u16]) -> f64 {
 /// The cost of a group of ways, of which the best is taken under each condition.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cost {
-    /// Operating points under each condition; fewer if no way of it can fire the ring.
+    /// Operating points under each condition; fewer if no way of the group can fire the ring.
     pub operating: Vec<Operating>,
     /// The geometric mean over the conditions of its t95 relative to that of the first group, which may have more false
-    /// stops; none where it has no operating point under a condition.
+    /// stops; `None` without an operating point under a condition.
     pub cost: Option<Estimate>,
 }
 
@@ -161,14 +161,14 @@ pub struct Cost {
 pub struct Costs {
     /// Costs of each group.
     pub costs: Vec<Cost>,
-    /// The one to recommend; none if no group has a point under each condition.
+    /// The group to recommend; `None` if no group has a point under each condition.
     pub recommended: Option<usize>,
-    /// One of less cost from which the recommended one does not surely differ.
+    /// A group of less cost that does not differ significantly from the recommended one.
     pub draw: Option<usize>,
 }
 
 impl Measured {
-    /// Rooms drawn again, the same for all conditions of a set of rooms.
+    /// Bootstrap samples, the same for all conditions of a set of rooms.
     pub(super) fn bootstrap(&self, condition: Condition) -> Bootstrap {
         let rooms = self.under.iter().find(|under| under.condition == condition).map_or(0, |under| under.places.len());
         Bootstrap::new(rooms, u64::from(condition.others))
@@ -190,7 +190,7 @@ impl Measured {
     }
 
     /// The costs of groups of ways with points chosen in other rooms of the same conditions, and the group to
-    /// recommend: that of the least cost, or a simpler one from which it does not surely differ.
+    /// recommend: the one of the least cost, or a simpler one that does not differ significantly from it.
     pub fn costs(&self, chosen: &Self, groups: &[Vec<usize>]) -> Costs {
         let operating = |group: &Vec<usize>| -> Vec<Operating> {
             let of = |under: &Under| under.operating(chosen, |way| group.contains(&way), ONE_A_MINUTE);
@@ -215,7 +215,7 @@ impl Measured {
     }
 
     /// Chooses among groups with their points under each condition, the simplest first: the one to recommend, and one
-    /// of less cost from which it does not surely differ.
+    /// of less cost that does not differ significantly from it.
     fn recommend(&self, usable: &[(usize, &Vec<Point>)]) -> [Option<usize>; 2] {
         let Some((_, first)) = usable.first() else { return [None; 2] };
         let values: Vec<f64> = usable.iter().map(|(_, points)| self.ratio(points, first).value).collect();

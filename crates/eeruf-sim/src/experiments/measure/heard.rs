@@ -1,4 +1,4 @@
-//! Readings of one robot's sensors in a trial, as all settings of votes judge it, and what controls make of it.
+//! Readings of one robot's sensors in a trial, for all settings of votes, and the controls that alter them.
 
 use core::ops::Range;
 
@@ -58,7 +58,7 @@ impl Heard {
     }
 }
 
-/// Ways that must rank as they do whatever the measure: what is done to the readings of a way that is sound.
+/// Controls whose rank is known in advance: each alters the readings of a good way.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Control {
     /// A control that believes nothing.
@@ -81,13 +81,12 @@ impl Control {
     /// Controls that are a sound way with something wrong planted in it.
     pub const PLANTED: [Self; 3] = [Self::Masked, Self::Late, Self::Foreign];
 
-    /// The time for which a belief lasts where it usually lasts as long, and for how long nothing replaces it, in
-    /// seconds.
+    /// The normal lifetime of a belief under a control, and the time for which nothing replaces it, in seconds.
     pub(super) fn life_s(control: Option<Self>, usual_s: f64) -> [f64; 2] {
         if control == Some(Self::Holds) { [10.0; 2] } else { [usual_s, 0.0] }
     }
 
-    /// Readings as the control has them.
+    /// Applies the control to readings.
     pub(super) fn apply(self, heard: &mut [Heard], number: u64, c: f64) {
         const LATE_S: f64 = 0.3;
         const OFTEN: f64 = 0.05;

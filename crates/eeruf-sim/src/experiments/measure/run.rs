@@ -38,9 +38,9 @@ pub struct MeasureAsked {
 pub struct Place {
     /// The room's kind and number.
     pub room: (RoomKind, u64),
-    /// The thing's kind, its sensor and distance in metres; none where none had room that its sensor reads.
+    /// The thing's kind, its sensor and its distance in metres; `None` if no thing fitted that its sensor reads.
     pub thing: Option<(ThingKind, usize, f64)>,
-    /// Draws of the thing.
+    /// Statistics of drawing the thing.
     pub draws: Draws,
     /// The driving or turning robot's speed in m/s.
     pub speed_m_s: f64,
@@ -70,15 +70,15 @@ pub struct Measured {
 }
 
 impl Under {
-    /// The share of things that had room but are not read by the sensor before which they are: the module's blindness.
+    /// The share of things that fitted but that their own sensor does not read: the module's blindness.
     pub fn unread(&self) -> f64 {
         let sum = |of: fn(&Draws) -> u32| self.places.iter().map(|place| f64::from(of(&place.draws))).sum::<f64>();
         sum(|draws| draws.unread) / sum(|draws| draws.fitted).max(1.0)
     }
 }
 
-/// Measures ways, on all cores; each may be a control. `keep_going` is called by several threads with the share that is
-/// done, 0 to 1; when its answer is `false` the measurement stops. The result does not depend on the number of threads.
+/// Measures ways, on all cores; each may be a control. Several threads call `keep_going` with the finished share, 0 to
+/// 1; if it returns `false`, the measurement stops. The result does not depend on the number of threads.
 ///
 /// # Errors
 /// [`ExperimentError`] for no ways, rooms or conditions, a room in which the robot cannot be, and if it was stopped.
@@ -136,7 +136,7 @@ pub fn measure(
     Ok(Measured { ways: ways.iter().map(|(way, _)| way.clone()).collect(), under })
 }
 
-/// Figures of each of some ways, from those of all of them in each room.
+/// Figures of each of some ways, from the figures of all ways in each room.
 fn by_setting(mut by_room: Vec<Vec<Result<[Sight; Setting::ALL.len()], String>>>, ways: usize) -> Vec<BySetting> {
     let of_way = |way: usize| -> BySetting {
         let of_rooms: Vec<_> =
@@ -202,8 +202,8 @@ impl Measured {
     pub const CSV_HEAD: &'static str = "condition,room,number,way,setting,thing,sensor,distance_m,drawn,unread,\
                                         speed_m_s,latency_ms,false_stops,watched_s,foreign,right,blind";
 
-    /// One row for each room, way, condition and setting, without a head: a latency that is infinite is `inf`, what
-    /// does not exist is empty.
+    /// One row for each room, way, condition and setting, without a head: an infinite latency is `inf`, a missing value
+    /// is empty.
     pub fn csv(&self) -> String {
         let mut out = String::new();
         for under in &self.under {

@@ -1,4 +1,4 @@
-//! The needs of a robot in a trial, of its beliefs: to see the thing that appears, and not to stop for nothing.
+//! A robot's success in a trial, judged by its beliefs: it sees the thing that appears, and does not stop for nothing.
 
 use core::f64::consts::PI;
 
@@ -12,14 +12,14 @@ use crate::{
     world::Robot,
 };
 
-/// Foreign sound is taken for an obstacle within this distance, and where it is nearer than everything by this much.
+/// Limits in metres for a false stop: the largest distance, and the least difference to every real surface.
 const STOPS_M: f64 = 1.5;
 const NEARER_M: f64 = 0.15;
-/// Everything within this angle of a sensor's axis.
+/// Angle from a sensor's axis within which surfaces count.
 const WITHIN_RAD: f64 = PI / 3.0;
-/// An onset after this time without one is a false stop, and each further such time of it.
+/// Time without a false stop after which an onset is a new one; each further such time counts once more.
 const APART_S: f64 = 1.0;
-/// A sensor that is right in fewer than this share of its readings is blind.
+/// Share of right readings below which a sensor is blind.
 const BLIND: f64 = 0.05;
 
 /// One trial's figures of one way and setting.
@@ -100,7 +100,7 @@ impl Trial {
         }
     }
 
-    /// Returns true if it is a belief in the thing, of a sensor that alone would read it.
+    /// Returns true if a belief is in the thing, and its sensor would read the thing alone.
     fn sees(&self, robot: &Robot, belief: &Believed) -> bool {
         let Believed { heard, t_echo_us, .. } = belief;
         let Some(thing) = self.thing.as_ref().filter(|_| heard.fired_s >= self.appears_s) else { return false };

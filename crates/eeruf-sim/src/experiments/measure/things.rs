@@ -1,4 +1,4 @@
-//! Things that appear before a robot: how they are drawn, where they end, and which sensor would read them alone.
+//! Things that appear before a robot: how they are drawn, where they are, and which sensor would read them alone.
 
 use core::f64::consts::FRAC_PI_2;
 
@@ -13,17 +13,17 @@ use crate::{
     world::{Noise, Random, Robot, World},
 };
 
-/// The nearest and the farthest that a thing appears from a sensor, in metres.
+/// Least and greatest distance of a thing from its sensor, in metres.
 const NEAR_M: [f64; 2] = [0.3, 2.0];
-/// The farthest that it appears off the sensor's axis, in degrees.
+/// Greatest angle of a thing off the sensor's axis, in degrees.
 const ASIDE_DEG: f64 = 7.5;
-/// Firings of the sensor alone in quiet air, one a second, and how many of them must read the thing first.
+/// Number of firings of the sensor alone in quiet air, one a second, and of those that must read the thing first.
 const FIRINGS: u32 = 10;
 const MUST_READ: usize = 9;
-/// Draws for one trial, after which it has no thing.
+/// Number of draws after which a trial has no thing.
 const MOST_DRAWN: u32 = 400;
 
-/// A kind of thing. All measures are choices.
+/// A kind of thing. All dimensions are choices.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum ThingKind {
@@ -57,12 +57,12 @@ pub(super) struct Thing {
     walls: Vec<Wall>,
 }
 
-/// Numbers of draws.
+/// Statistics of drawing things.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Draws {
-    /// Things that had room.
+    /// Number of things that fitted.
     pub fitted: u32,
-    /// Things that the sensor does not read: the module's blindness.
+    /// Number of things that their sensor does not read: the module's blindness.
     pub unread: u32,
 }
 
@@ -97,8 +97,8 @@ impl Thing {
         Self { kind, sensor, distance_m, poles, walls }
     }
 
-    /// Draws things for a robot at a pose in a room until there is one that has room, a clear line to its sensor, and
-    /// that this sensor reads: none if none of 400 has.
+    /// Draws things for a robot at a pose in a room until one fits, has a clear line to its sensor and is read by it;
+    /// `None` after 400 draws.
     pub(super) fn draw(
         mut random: Random,
         plan: &RoomPlan,
@@ -128,13 +128,13 @@ impl Thing {
         None
     }
 
-    /// The room with it.
+    /// The room with the thing.
     pub(super) fn scene(&self, plan: &RoomPlan) -> Result<Scene, crate::scene::SceneError> {
         let (walls, poles) = ([&plan.walls[..], &self.walls].concat(), [&plan.poles[..], &self.poles].concat());
         Scene::new(walls, poles, crate::scene::Air::default())?.with_room(Some(Room::DEFAULT))
     }
 
-    /// A scene of the caller's with it.
+    /// A scene of the caller's with the thing.
     pub(super) fn added_to(&self, scene: &Scene) -> Result<Scene, crate::scene::SceneError> {
         let (walls, poles) = ([scene.walls(), &self.walls].concat(), [scene.poles(), &self.poles].concat());
         Scene::new(walls, poles, scene.air())?.with_room(scene.room().copied())
@@ -146,7 +146,7 @@ impl Thing {
         poles.chain(self.walls.iter().map(|wall| between(wall.from, wall.to)))
     }
 
-    /// True if it touches nothing, stands in no robot, and nothing is between it and its sensor.
+    /// Returns true if the thing touches nothing, is in no robot, and has a clear line to its sensor.
     fn fits(&self, world: &World, pose: &Pose) -> bool {
         let (robots, scene) = (world.robots(), world.scene());
         let at = |index: usize| if index == 0 { *pose } else { robots[index].pose };
@@ -175,14 +175,14 @@ impl Thing {
         2e6 * (self.nearest_point(from) - from).norm() / c
     }
 
-    /// True if what a sensor reads alone in the room without it is something else.
+    /// Returns true if the sensor's reading alone is different without the thing.
     pub(super) fn changes(&self, plan: &RoomPlan, robot: &Robot, sensor: usize, seen: &Pose, us: f64) -> bool {
         let room = plan.scene().and_then(|scene| scene.with_room(Some(Room::DEFAULT)));
         let without = room.ok().and_then(|scene| alone(scene, robot, sensor, seen, 1, 0));
         without.is_some_and(|readings| readings.reference_us.first().is_some_and(|&before| !is_near(before, us)))
     }
 
-    /// Returns true if a robot at a pose touches it.
+    /// Returns true if a robot at a pose touches the thing.
     pub(super) fn touches(&self, robot: &Robot, pose: &Pose) -> bool {
         self.bodies().any(|(body, there)| robot.outline().overlaps(pose, &body, &there))
     }
@@ -211,7 +211,7 @@ pub(super) fn nearest_of(from: Point, to: Point, place: Point) -> Point {
     from + way * ((place - from).dot(&way) / way.norm_squared()).clamp(0.0, 1.0)
 }
 
-/// Readings of one sensor of a robot, alone in quiet air, one a second; none where it cannot stand.
+/// Readings of one sensor of a robot, alone in quiet air, one a second; empty if it cannot stand there.
 fn alone(scene: Scene, robot: &Robot, sensor: usize, seen: &Pose, firings: u32, seed: u64) -> Option<Readings> {
     let second = eeruf_core::Micros::from_millis(1000);
     let mut one = Robot::with_sensors(*seen, vec![Pose::identity()], robot.transducer_of(sensor));

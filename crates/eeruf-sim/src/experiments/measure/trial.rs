@@ -1,4 +1,4 @@
-//! Trials: a robot in a room under a condition, before which something appears, and what a way of firing reads there.
+//! Trials: a robot in a room under a condition, the thing that appears before it, and the readings of a way of firing.
 
 use std::sync::Arc;
 
@@ -19,18 +19,18 @@ use crate::{
     world::{Random, Robot, World, WorldError},
 };
 
-/// The version of the set of trials. A trial of one version and number is the same for ever.
+/// The version of the set of trials. A trial is fixed by version and number.
 pub const VERSION: u32 = 1;
-/// A thing appears at a uniform instant between these, in seconds, so that a trial measures false stops for 10 s in the
-/// mean.
+/// Limits of the uniform instant at which a thing appears, in seconds: a trial measures false stops for 10 s on
+/// average.
 const APPEARS_S: [f64; 2] = [5.0, 15.0];
-/// The time in seconds within which a thing is seen, or never.
+/// The time in seconds after which a thing counts as never seen.
 pub const NEVER_S: f64 = 5.0;
 /// The longest trial.
 const LONGEST_S: f64 = APPEARS_S[1] + NEVER_S;
-/// The key of what is random about trials, beside those of the kinds of rooms.
+/// The random key of trials, beside those of the kinds of rooms.
 const THING: u64 = 200;
-/// From one look for contact to the next, in seconds.
+/// Interval between two checks for contact, in seconds.
 const LOOK_S: f64 = 0.01;
 
 /// A robot's motion.
@@ -50,12 +50,12 @@ pub enum Moving {
 pub struct Condition {
     /// The robot's motion.
     pub moving: Moving,
-    /// True for another robot of its make close by, by a clock of its own.
+    /// True for another robot of its make close by, with a clock of its own.
     pub others: bool,
 }
 
 impl Condition {
-    /// All six, alone first.
+    /// All six conditions, alone first.
     pub const ALL: [Self; 6] = [
         Self { moving: Moving::Standing, others: false },
         Self { moving: Moving::Driving, others: false },
@@ -77,8 +77,8 @@ impl Condition {
         }
     }
 
-    /// The rooms of this many places of each kind: alone those of the seven kinds without another robot, else as many
-    /// of the kind with one.
+    /// Rooms with this many places of each kind: alone, those of the seven kinds without another robot; otherwise as
+    /// many of the kind with one.
     pub fn rooms(self, first: u64, places: u64) -> Vec<(RoomKind, u64)> {
         let alone = RoomKind::ALL.into_iter().filter(|&kind| kind != RoomKind::Meeting);
         match self.others {
@@ -105,9 +105,9 @@ pub(super) struct Trial {
     pub(super) draws: Draws,
     /// Time when the thing appears.
     pub(super) appears_s: f64,
-    /// Time when the trial ends: the robot would touch the thing, or it has had its time.
+    /// Time when the trial ends: before the robot touches the thing, or after the time for seeing it.
     pub(super) ends_s: f64,
-    /// The robot's speeds, of which the other is 0.
+    /// The robot's speeds, at most one of which is not 0.
     pub(super) speeds: Speeds,
     pub(super) c: f64,
 }
@@ -162,7 +162,7 @@ impl Trial {
         trial
     }
 
-    /// The time of a leg of the robot's way, in seconds, if it drives to and fro.
+    /// The duration of a leg of the robot's way, in seconds, if it drives back and forth.
     fn leg_s(&self) -> Option<f64> {
         let is_asked = self.speeds.speed_m_s > 0.0 && self.plan.turns();
         is_asked.then(|| self.plan.way_m() / self.speeds.speed_m_s)
@@ -183,7 +183,7 @@ impl Trial {
         (0.15 / speed_m_s).min(10f64.to_radians() / turn_rad_s.abs()).min(2.0)
     }
 
-    /// Readings of the first robot by a way of firing, in the order in which they were complete.
+    /// Readings of the first robot with a way of firing, in the order in which they were complete.
     pub(super) fn heard(&self, way: &RoomWay, keep_going: &dyn Fn() -> bool) -> Result<Vec<Heard>, ExperimentError> {
         let Speeds { speed_m_s, turn_rad_s } = self.speeds;
         let world = self.plan.moving(&way.robot, speed_m_s, turn_rad_s)?.with_room(Some(Room::DEFAULT))?;

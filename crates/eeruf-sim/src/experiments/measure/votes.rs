@@ -1,4 +1,4 @@
-//! Settings of votes: what is believed of a sensor's readings.
+//! Settings of votes: which of a sensor's readings are believed.
 
 use core::fmt;
 
@@ -26,7 +26,7 @@ pub enum Setting {
 }
 
 impl Setting {
-    /// All, the most eager first and the most cautious last of the votes.
+    /// All settings: votes from the most eager to the most cautious, then the median.
     pub const ALL: [Self; 6] = [
         Self::Votes { m: 1, n: 1 },
         Self::Votes { m: 2, n: 3 },
@@ -46,7 +46,7 @@ impl fmt::Display for Setting {
     }
 }
 
-/// A belief from one reading on.
+/// A belief that begins with one reading.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Believed {
     /// The reading that completed it.
@@ -54,12 +54,12 @@ pub(super) struct Believed {
     /// The echo time; NaN for silence.
     pub(super) t_echo_us: f64,
     pub(super) cause: Cause,
-    /// Time until which it lasts.
+    /// Time until which the belief lasts.
     pub(super) until_s: f64,
 }
 
-/// The beliefs of one sensor, from its readings in order: each ends when the next begins, or when its life is over.
-/// `holds_s` is how long nothing replaces one.
+/// The beliefs of one sensor, from its readings in order: each ends when the next begins or its life is over. `holds_s`
+/// is the time for which nothing replaces one.
 pub(super) fn believed(heard: &[Heard], setting: Setting, life_s: [f64; 2]) -> Vec<Believed> {
     let near = Micros::new(DEFAULT_TOLERANCE_US as u32);
     match setting {
@@ -70,7 +70,7 @@ pub(super) fn believed(heard: &[Heard], setting: Setting, life_s: [f64; 2]) -> V
     .unwrap_or_default()
 }
 
-/// The beliefs by one of core's judges, to whom a reading that its way does not believe says nothing.
+/// The beliefs by one of core's judges, for which a reading that its way does not believe has no information.
 fn by(mut judge: impl Judge, heard: &[Heard], [life_s, holds_s]: [f64; 2]) -> Vec<Believed> {
     let mut beliefs: Vec<Believed> = vec![];
     for (number, reading) in heard.iter().enumerate() {

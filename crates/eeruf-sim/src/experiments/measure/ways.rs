@@ -24,10 +24,10 @@ pub enum Family {
 }
 
 impl Family {
-    /// All.
+    /// All families, the simplest first.
     pub const ALL: [Self; 4] = [Self::OneByOne, Self::Groups, Self::TwoPhases, Self::Flow];
 
-    /// The family of a way, by its name; none for a way that is not measured.
+    /// The family of a way, by its name; `None` for a way that is not measured.
     fn of(name: &str) -> Option<Self> {
         match name {
             "sequential" => Some(Self::OneByOne),
@@ -55,7 +55,7 @@ impl fmt::Display for Family {
 pub struct MeasuredWay {
     /// The family.
     pub family: Family,
-    /// The way; all know the robot's motion.
+    /// The way; every way knows the robot's motion.
     pub way: RoomWay,
 }
 

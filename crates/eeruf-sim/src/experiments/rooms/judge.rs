@@ -18,8 +18,8 @@ use crate::{
     world::{Robot, World},
 };
 
-/// Simulated time of each room for a robot that stands, in seconds: long against the first readings, before which
-/// nothing is believed.
+/// Simulated time of each room for a robot that stands, in seconds: long compared with the time before the first
+/// beliefs.
 const STANDING_S: f64 = 20.0;
 
 /// Options of a judgement.
@@ -29,8 +29,8 @@ pub struct RoomsOptions {
     pub speed_m_s: f64,
     /// The modules' gain, and floor and ceiling.
     pub condition: Condition,
-    /// The largest share of foreign sound in what is believed, at the median room of each kind, of a way that is
-    /// recommended. The default is 0.03.
+    /// The largest share of foreign sound among believed readings that a recommended way may have in the median room of
+    /// each kind. The default is 0.03.
     pub wrong: f64,
 }
 
@@ -40,7 +40,7 @@ impl Default for RoomsOptions {
     }
 }
 
-/// Rooms whose figures are summed up together.
+/// Rooms whose figures are combined.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RoomGroup {
     /// The name in tables and in JSON.
@@ -57,8 +57,8 @@ impl RoomGroup {
         Self { name: kind.to_string(), rooms }
     }
 
-    /// The room of a world, for a ring that stands where the world's first robot does, and drives as far as that one
-    /// would; none for a world without a robot.
+    /// The room of a world, for a ring in the place of the world's first robot, with as much free way; `None` for a
+    /// world without a robot.
     pub fn of_world(name: String, number: u64, world: &World) -> Option<Self> {
         let robot = world.robots().first()?;
         let way_m = robot.motion.at(&robot.pose, DRIVING_S).pose.translation.vector - robot.pose.translation.vector;
@@ -67,8 +67,8 @@ impl RoomGroup {
         Some(Self { name, rooms: vec![plan] })
     }
 
-    /// Places in a map, as [`of_kind`](Self::of_kind) has rooms of a kind: half of the robots stand square to it. They
-    /// are drawn from what is known to be free.
+    /// Places in the known free space of a map, like the rooms of [`of_kind`](Self::of_kind): half of the robots stand
+    /// square to it.
     ///
     /// # Errors
     /// The width for which no free space was found.
@@ -92,30 +92,30 @@ impl RoomGroup {
     }
 }
 
-/// The figures of a way in rooms of one kind, of one robot: shares of time and rates are means, what a way is refused
-/// for is that of the median room.
+/// The figures of a way in rooms of one kind, of one robot: shares of time and rates are means; figures for which a way
+/// is refused are those of the median room.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RoomFigures {
     /// Shares of the time by what was last believed.
     #[serde(flatten)]
     pub belief: BeliefShares,
-    /// The mean share that is right lies here with 95 % confidence.
+    /// 95 % confidence interval of the mean share that is right.
     pub belief_right_95: [f64; 2],
     /// The least of these shares.
     pub belief_right_worst: f64,
     /// Accepted echoes that were right in a second.
     pub right_echoes_per_s: f64,
-    /// This mean lies here with 95 % confidence.
+    /// 95 % confidence interval of this mean.
     pub right_echoes_per_s_95: [f64; 2],
-    /// Share of what was accepted that was foreign sound and wrong.
+    /// Share of wrong foreign sound among accepted readings.
     pub foreign_of_believed: f64,
     /// Largest share of foreign sound among what a sensor believed.
     pub foreign_of_believed_worst: f64,
-    /// Share of what was accepted that was the sensor's own sound and wrong.
+    /// Share of wrong own sound among accepted readings.
     pub own_wrong_of_believed: f64,
     /// Sensors that were right under 5 % of the times they fired.
     pub blind: f64,
-    /// 99 % of the time the last accepted reading is no older than this.
+    /// 99th percentile of the age of the last accepted reading, in milliseconds.
     pub age_p99_ms: f64,
 }
 
@@ -128,8 +128,8 @@ pub struct JudgedWay {
     pub rooms: Result<Vec<RoomFigures>, String>,
     /// Least and largest number of blind sensors in 90 % of all rooms judged. Zeros if it cannot fire the ring.
     pub blind_90: [f64; 2],
-    /// 95 % confidence interval of [`echoes_against`](Self::echoes_against) the first way: for rooms of these kinds,
-    /// by how much they differ. None if one of the two cannot fire the ring, or no kind has two rooms.
+    /// 95 % confidence interval of [`echoes_against`](Self::echoes_against) the first way: from the differences among
+    /// rooms of a kind. `None` if one of the two cannot fire the ring, or if no kind has two rooms.
     pub times_95: Option<[f64; 2]>,
 }
 
@@ -138,9 +138,9 @@ pub struct JudgedWay {
 pub struct Judgement {
     /// The ways, in the order asked for.
     pub ways: Vec<JudgedWay>,
-    /// The index of the way to recommend, which a program has; none if no such way can fire the ring.
+    /// The index of the way to recommend, among those that a program can have; `None` if no such way can fire the ring.
     pub recommended: Option<usize>,
-    /// True if that keeps to the shares asked for in each kind of room.
+    /// True if that way keeps the limits in each kind of room.
     pub keeps: bool,
 }
 
@@ -150,7 +150,7 @@ impl Judgement {
         self.recommended.and_then(|index| self.ways.get(index))
     }
 
-    /// The judgement without some groups of rooms, named by their index; none if no group is left out, or none left.
+    /// The judgement without some groups of rooms, given by index; `None` if no group is left out or none remains.
     /// [`JudgedWay::blind_90`] and [`JudgedWay::times_95`] stay those of all rooms.
     pub fn without(&self, left_out: impl Fn(usize) -> bool, wrong: f64) -> Option<Self> {
         let mut ways = self.ways.clone();
@@ -228,10 +228,10 @@ impl RoomFigures {
     }
 }
 
-/// Judges ways of firing in rooms, on all cores; the first is the one by one that others are measured by.
+/// Judges ways of firing in rooms, on all cores; the first is one by one, with which the others are compared.
 ///
-/// `keep_going` is called now and then, by several threads, with the share that is done, 0 to 1; when its answer is
-/// `false` the judgement stops. The result does not depend on the number of threads.
+/// Several threads sometimes call `keep_going` with the finished share, 0 to 1; if it returns `false`, the judgement
+/// stops. The result does not depend on the number of threads.
 ///
 /// # Errors
 /// [`ExperimentError`] for no rooms or ways, a room in which the robot cannot be, and if it was stopped.
@@ -295,16 +295,16 @@ pub fn judge(
     Ok(Judgement { ways, recommended, keeps })
 }
 
-/// The numbers of blind sensors between which 90 % of rooms lie. Rooms with several robots have fractions.
+/// The numbers of blind sensors between which 90 % of rooms lie. Rooms with several robots can have fractions.
 fn blind_90(runs: &[Run]) -> [f64; 2] {
     let mut blind: Vec<f64> = runs.iter().map(|run| run.blind).collect();
     [libm::floor(quantile(&mut blind, 0.05)), libm::ceil(quantile(&mut blind, 0.95))]
 }
 
-/// Added to right echoes a second before they are divided, so that ways that hear none are equal.
+/// Number added to right echoes a second before division, so that ways that hear none are equal.
 const NO_ECHOES: f64 = 0.1;
 
-/// The 95 % interval of the factor of right echoes, from how rooms of a kind differ in it.
+/// The 95 % interval of the ratio of right echoes, from its spread among rooms of a kind.
 fn times_95(own: &[Run], base: &[Run], sizes: &[usize]) -> Option<[f64; 2]> {
     let (mut own, mut base) = (own, base);
     let (mut sum, mut variance, mut measured) = (0.0, 0.0, false);
@@ -331,7 +331,7 @@ fn times_95(own: &[Run], base: &[Run], sizes: &[usize]) -> Option<[f64; 2]> {
     measured.then(|| [-reach, reach].map(|reach| libm::exp(sum / kinds + reach)))
 }
 
-/// A room with the robot in it.
+/// A room with the robot.
 fn world_of(room: &RoomPlan, robot: &Robot, asked: &RoomsOptions) -> Result<World, ExperimentError> {
     let Condition { other_gain, flat } = asked.condition;
     let robot = if other_gain { with_other_gain(robot) } else { robot.clone() };
@@ -339,7 +339,7 @@ fn world_of(room: &RoomPlan, robot: &Robot, asked: &RoomsOptions) -> Result<Worl
     Ok(room.world(&robot, asked.speed_m_s)?.with_room(height)?.with_physics(Physics::DEFAULT)?)
 }
 
-/// Returns the robot with the other gain: the steps of the chip where it is constant, constant where it grows.
+/// Returns the robot with the other gain: stepped if it was constant, otherwise constant.
 pub fn with_other_gain(robot: &Robot) -> Robot {
     let other = match robot.module_of(0).gain {
         Gain::Constant if robot.module_of(0).frequency_hz > 45_000 => GainProfile::Polaroid6500,
@@ -351,19 +351,19 @@ pub fn with_other_gain(robot: &Robot) -> Robot {
 
 /// Excess of own wrong echoes over those of one by one that is allowed, as a share.
 const OWN_WRONG_MORE: f64 = 0.01;
-/// Ways whose shares of right belief differ by less are equal, and the one with more right echoes is better.
+/// Difference of right belief below which two ways are equal, so that the one with more right echoes is better.
 const AS_GOOD: f64 = 0.01;
-/// One by one, which takes no library, is as good as a way with less than this many times its right echoes.
+/// Ratio of right echoes below which one by one, which needs no library, is as good as another way.
 const WORTH_A_LIBRARY: f64 = 1.2;
 
 impl JudgedWay {
-    /// The share of time in which what is believed is right, over all kinds of rooms.
+    /// The share of time in which the belief is right, over all kinds of rooms.
     pub fn belief_right(&self) -> Option<f64> {
         let rooms = self.rooms.as_ref().ok()?;
         Some(rooms.iter().map(|figures| figures.belief.right).sum::<f64>() / rooms.len() as f64)
     }
 
-    /// Ratio of its right echoes to those of another way, as the geometric mean over all kinds of rooms.
+    /// Ratio of right echoes to those of another way, as the geometric mean over all kinds of rooms.
     pub fn echoes_against(&self, other: &Self) -> Option<f64> {
         let (Ok(own), Ok(others)) = (&self.rooms, &other.rooms) else { return None };
         let ratio = |(own, other): (&RoomFigures, &RoomFigures)| {
@@ -373,8 +373,8 @@ impl JudgedWay {
         Some(libm::exp(logs / own.len() as f64))
     }
 
-    /// The index of the first group of rooms in which it is wrong too often or leaves a sensor blind that one by one
-    /// does not.
+    /// The index of the first group of rooms in which a way is wrong too often, or leaves a sensor blind that one by
+    /// one does not.
     pub fn fails_in(&self, one_by_one: &Self, wrong: f64) -> Option<usize> {
         let (Ok(own), Ok(base)) = (&self.rooms, &one_by_one.rooms) else { return None };
         let fails = |own: &RoomFigures, base: &RoomFigures| {
@@ -386,9 +386,9 @@ impl JudgedWay {
     }
 }
 
-/// The way, of those that a program has, that is right most of the time and keeps to the shares asked for; of several
-/// as good, the one with most right echoes, but one by one if that has hardly fewer. Where none keeps to them, the one
-/// that is right most of the time.
+/// The way, among those that a program can have, that keeps the limits and is right most of the time; among equal ones
+/// the one with most right echoes, or one by one if that has hardly fewer. If none keeps the limits, the one that is
+/// right most of the time.
 fn recommend(ways: &[JudgedWay], wrong: f64) -> (Option<usize>, bool) {
     let Some(base) = ways.first() else { return (None, false) };
     let best_of = |among: &dyn Fn(&JudgedWay) -> bool| {

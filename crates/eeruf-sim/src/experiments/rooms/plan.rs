@@ -13,20 +13,20 @@ use crate::{
     world::{Clock, Motion, Noise, Random, Robot, World, WorldError},
 };
 
-/// The version of the set. A room of one version and number is the same for ever.
+/// The version of the set. A room is fixed by version and number.
 pub const VERSION: u32 = 1;
 /// Simulated time of a robot that drives, in seconds, and has way to drive.
 pub const DRIVING_S: f64 = 8.0;
 
-/// The key of what is random about places in maps, beside those of the kinds.
+/// The random key of places in maps, beside those of the kinds.
 const MAP: u64 = 100;
-/// The most places in a map of which one must be wide enough.
+/// Number of places drawn in a map, one of which must be wide enough.
 const MOST_DRAWN: u32 = 100_000;
 
 /// Free space that is kept around a robot, in metres.
 const CLEARANCE_M: f64 = 0.2;
 
-/// A kind of room. All measures are choices: rooms as people live and work in.
+/// A kind of room. All dimensions are choices, after rooms in which people live and work.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum RoomKind {
     /// A corridor 16 m long and 1.6 to 2.4 m wide.
@@ -116,7 +116,7 @@ impl FromStr for RoomKind {
 /// A room with a place in it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RoomPlan {
-    /// The kind's number in the set, or its file's own; it seeds what is random.
+    /// The kind's number in the set, or the file's own; it seeds all that is random.
     pub number: u64,
     /// The walls.
     pub walls: Vec<Wall>,
@@ -128,7 +128,7 @@ pub struct RoomPlan {
     pub other: Option<Pose>,
     /// The direction in which the robot drives, if it does, as a unit vector, and the free way ahead in metres.
     way: (Vector, f64),
-    /// True if it looks where it drives.
+    /// True if the robot faces its driving direction.
     turns: bool,
 }
 
@@ -160,7 +160,7 @@ impl Solid {
     }
 }
 
-/// A room being furnished: its middle is the origin.
+/// A room being furnished; its middle is the origin.
 struct Draft {
     /// Length and width inside.
     size: [f64; 2],
@@ -169,7 +169,7 @@ struct Draft {
 }
 
 impl Draft {
-    /// The distance from a place to the nearest thing, in metres; below zero outside.
+    /// The distance from a place to the nearest object, in metres; negative outside.
     fn free_m(&self, place: [f64; 2]) -> f64 {
         let [x, y] = place;
         let walls = (0.5 * self.size[0] - x.abs()).min(0.5 * self.size[1] - y.abs());
@@ -178,7 +178,7 @@ impl Draft {
         solids.chain(poles).fold(walls, f64::min)
     }
 
-    /// The roomiest of some places drawn in the middle part of the room.
+    /// The roomiest of several places drawn in the middle part of the room.
     fn place(&self, random: &mut Random, share: f64, radius_m: f64) -> Vector {
         let mut best = ([0.0; 2], f64::NEG_INFINITY);
         for _ in 0..200 {
@@ -202,7 +202,7 @@ impl Draft {
     }
 }
 
-/// The direction of the longest way from a place, and its length in metres, up to what a robot drives.
+/// The direction of the longest free way from a place, and its length in metres, at most what a robot drives.
 fn longest_way(from: Vector, directions: &[f64], is_free: impl Fn(Vector) -> bool) -> (Vector, f64) {
     const STEP_M: f64 = 0.05;
     let ways = directions.iter().map(|&rad| {
@@ -214,14 +214,14 @@ fn longest_way(from: Vector, directions: &[f64], is_free: impl Fn(Vector) -> boo
     longest.unwrap_or((Vector::new(1.0, 0.0), 0.0))
 }
 
-/// All round.
+/// Directions all round.
 fn directions() -> Vec<f64> {
     (0..16).map(|k| TAU * f64::from(k) / 16.0).collect()
 }
 
 impl RoomPlan {
-    /// The room that a number stands for, of a kind, for a robot that needs a circle of this radius. Where that does
-    /// not fit, the room is larger by as much.
+    /// The room that a number stands for, of a kind, for a robot that needs a circle of this radius. If that does not
+    /// fit, the room is made larger.
     pub fn random(kind: RoomKind, number: u64, radius_m: f64) -> Self {
         let mut random = Random::new(number).of(kind as u64);
         let radius_m = radius_m + CLEARANCE_M;
@@ -279,8 +279,8 @@ impl RoomPlan {
         }
     }
 
-    /// The place that a number stands for in a map, one of those that are `free`, for a robot that needs a circle of
-    /// this radius; none if no free space as wide is found. The walls are the map's.
+    /// The place that a number stands for in a map, among those that are `free`, for a robot that needs a circle of
+    /// this radius; `None` if no free space is wide enough. The walls are the map's.
     pub(super) fn in_map(
         grid: &OccupancyGrid,
         free: &[[f64; 2]],
@@ -318,8 +318,8 @@ impl RoomPlan {
         Scene::new(self.walls.clone(), self.poles.clone(), Air::default())
     }
 
-    /// The world with a robot in its place, standing or at this speed, which is less where it would meet something
-    /// within [`DRIVING_S`]. Another robot of its make has its own clock.
+    /// The world with a robot in its place, standing or driving at this speed, or more slowly if it would meet
+    /// something within [`DRIVING_S`]. Another robot of its make has its own clock.
     ///
     /// # Errors
     /// [`WorldError`] for a robot that does not fit.
@@ -332,7 +332,7 @@ impl RoomPlan {
         self.way.1
     }
 
-    /// Returns true if it looks where it drives.
+    /// Returns true if the robot faces its driving direction.
     pub(in crate::experiments) fn turns(&self) -> bool {
         self.turns
     }

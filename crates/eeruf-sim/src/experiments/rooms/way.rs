@@ -12,11 +12,11 @@ use crate::{
 /// A way of firing a ring.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RoomWay {
-    /// The name in tables and in JSON: that of its method, and what differs.
+    /// The name in tables and in JSON: that of its method, with the differences.
     pub name: &'static str,
     /// The method.
     pub method: Method,
-    /// The robot as it fires that way.
+    /// The robot with the settings of this way.
     pub robot: Robot,
     /// Settings of the method.
     pub options: Options,
@@ -26,8 +26,8 @@ impl RoomWay {
     /// The ways for a ring, the baselines first. All listen for the robot's window, flow for no longer than it
     /// [reaches](Robot::reach).
     ///
-    /// `schedule` is a schedule of two phases for it, the shortest; where there is none, there are no ways of two
-    /// phases. `robot.period` is used by none of them.
+    /// `schedule` is a schedule of two phases for it, the shortest; without one there are no ways of two phases. No way
+    /// uses `robot.period`.
     pub fn all(robot: &Robot, schedule: Option<&AnySchedule>) -> Vec<Self> {
         let way = |name, method, period: Micros| Self {
             name,
@@ -64,12 +64,12 @@ impl RoomWay {
         ways
     }
 
-    /// Returns true if a program for a board can fire so.
+    /// Returns true if a program for a board can fire this way.
     pub fn has_program(&self) -> bool {
         matches!(self.method, Method::Sequential | Method::FarGroups | Method::Flow) || self.name == "eeruf"
     }
 
-    /// The name with what it means, for tables.
+    /// The name with its meaning, for tables.
     pub fn title(&self) -> &'static str {
         match self.name {
             "sequential" => "one by one",
@@ -86,10 +86,10 @@ impl RoomWay {
     }
 }
 
-/// The conditions that answers may hang on: the modules' gain, and floor and ceiling.
+/// Conditions on which answers may depend: the modules' gain, and floor and ceiling.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Condition {
-    /// True for the other gain than the modules have: a constant one's steps, another's constant.
+    /// True for the gain that the modules do not have: stepped instead of constant, or constant instead of growing.
     pub other_gain: bool,
     /// True for rooms without floor and ceiling.
     pub flat: bool,

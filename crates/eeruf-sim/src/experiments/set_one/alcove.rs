@@ -14,8 +14,8 @@ pub const SPACING_DEG: f64 = 15.0;
 /// The radius of the arc that they stand on, in metres: a choice.
 pub const RADIUS_M: f64 = 0.30;
 
-/// Measures of one alcove and of the robot before it. The mouth lies on the x axis around the origin, the back wall at
-/// `y = depth_m`.
+/// Dimensions of one alcove and of the robot before it. The mouth lies on the x axis around the origin, the back wall
+/// at `y = depth_m`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Alcove {
     /// Width from side wall to side wall, in metres.

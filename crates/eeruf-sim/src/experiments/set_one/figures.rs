@@ -15,20 +15,20 @@ pub struct Run {
     pub seed: u64,
     /// The figures of the alcove as it is.
     pub summary: Summary,
-    /// Steps of its back wall, which goes to and fro.
+    /// Steps of the back wall, which moves back and forth.
     #[serde(flatten)]
     pub steps: Steps,
 }
 
-/// A method's figures over all geometries; shares are fractions of 1, as in [`Summary`]. `None` where no geometry has a
+/// A method's figures over all geometries; shares are fractions of 1, as in [`Summary`]. `None` if no geometry has a
 /// value.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Figures {
     /// Share of all readings that were accepted and wrong.
     pub wrong_of_all: Option<Spread>,
-    /// The part of it that foreign or stale sound caused.
+    /// The part of `wrong_of_all` that foreign or stale sound caused.
     pub crosstalk_of_all: Option<Spread>,
-    /// The part of it that was confirmed, not only tentative.
+    /// The part of `wrong_of_all` that was confirmed, not only tentative.
     pub confirmed_wrong_of_all: Option<Spread>,
     /// Share of the accepted readings that were wrong.
     pub wrong_of_accepted: Option<Spread>,
@@ -46,13 +46,13 @@ pub struct Figures {
     pub readings_per_s: Option<Spread>,
     /// Share of the time in which what was last believed is right, as in [`BeliefShares`](crate::BeliefShares).
     pub belief_right: Option<Spread>,
-    /// The share in which nothing is believed.
+    /// Share of the time in which nothing is believed.
     pub unknown: Option<Spread>,
-    /// The share in which it is foreign sound.
+    /// Share of the time in which foreign sound is believed.
     pub phantom: Option<Spread>,
-    /// The share in which it is an own later echo.
+    /// Share of the time in which an own later echo is believed.
     pub too_far: Option<Spread>,
-    /// The share in which it is an own nearer echo.
+    /// Share of the time in which an own nearer echo is believed.
     pub faint: Option<Spread>,
     /// Accepted echoes that were right in a second, all sensors together.
     pub right_echoes_per_s: Option<Spread>,
@@ -66,7 +66,7 @@ pub struct Figures {
     pub starved_in_part: f64,
     /// Time until the back wall is read right again when it has come nearer by [`STEP_M`](super::STEP_M).
     pub nearer: Option<Latency>,
-    /// Latency when the wall has gone away as far.
+    /// Time until the wall is read right after it has moved away by as much.
     pub farther: Option<Latency>,
     /// Latency when the wall comes nearer for the first time, in milliseconds.
     pub new_step: Option<NewStep>,

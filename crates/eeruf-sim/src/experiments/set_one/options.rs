@@ -14,7 +14,7 @@ use crate::{
     world::Noise,
 };
 
-/// Number of readings the paper has of one set-up (Sec. 4): of the conventional method, and of all others in that
+/// Number of the paper's readings of one set-up (Sec. 4): conventional ones, and those of all other methods in the same
 /// time.
 pub const READINGS: u32 = 8000;
 
@@ -25,11 +25,11 @@ pub struct SetOneOptions {
     pub seeds: u64,
     /// The first geometry's number. The default is [`FIRST`]: parameters were tuned on geometries below 2,000.
     pub first: u64,
-    /// Time for which each geometry is simulated: as long as this many readings of the conventional method take. The
+    /// Duration of each geometry's simulation, as the number of readings that the conventional method takes in it. The
     /// default is [`READINGS`], as in the paper.
     pub readings: u32,
-    /// Number of steps of the back wall to and fro, for the figures of how soon that is seen; 0: none. The default is
-    /// 22: to and fro in each phase of a cycle of 11.
+    /// Number of steps of the back wall, for the figures of how soon they are seen; 0 for none. The default is 22: back
+    /// and forth in each phase of a cycle of 11.
     pub steps: u32,
     /// The methods. The default is [`Method::usual`].
     pub methods: Vec<Entry>,

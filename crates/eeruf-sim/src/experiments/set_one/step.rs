@@ -1,4 +1,4 @@
-//! Time until a method sees that the back wall has come nearer or gone away.
+//! Time until a method sees that the back wall has come nearer or moved away.
 
 use serde::{Deserialize, Serialize};
 
@@ -11,23 +11,24 @@ use crate::{
 
 /// Step of the back wall, in metres.
 pub const STEP_M: f64 = 0.25;
-/// The wall stays for this many periods: one more than a sensor may take, so that steps come in every phase of a cycle.
+/// Number of periods for which the wall stays: one more than a sensor may take, so that steps come in every phase of a
+/// cycle.
 const STAYS: u32 = 65;
-/// A sensor that needs longer has not seen the step.
+/// Number of periods after which a step counts as not seen.
 const NEVER: u32 = 64;
-/// Only sensors are counted whose echo moves by more, in microseconds.
+/// Least change of an echo, in microseconds, for a sensor to be counted.
 const MOVED_US: f64 = 1000.0;
 
-/// For each step and sensor that it concerns, in which period after it the first right reading was accepted; `None` for
-/// never.
+/// For each step and each sensor that it concerns, the period after it in which the first right reading was accepted;
+/// `None` for never.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Steps {
     /// Periods after the steps nearer.
     pub nearer: Vec<Option<u32>>,
     /// Periods after the steps away.
     pub farther: Vec<Option<u32>>,
-    /// For the first step, which brings the wall nearer than it ever was: how many milliseconds after it the first
-    /// right reading was heard and accepted.
+    /// Milliseconds from the first step, which brings the wall nearer than ever, to the echo of the first accepted
+    /// right reading.
     pub new_ms: Vec<Option<f64>>,
 }
 
@@ -36,9 +37,9 @@ pub struct Steps {
 pub struct Latency {
     /// Number of steps of sensors that were counted.
     pub steps: usize,
-    /// Half of the steps are seen within as many periods; `None` if more than half never are.
+    /// Number of periods within which half of the steps are seen; `None` if more than half never are.
     pub median: Option<u32>,
-    /// Nine in ten are.
+    /// Number of periods within which nine in ten steps are seen.
     pub p90: Option<u32>,
     /// Share of the steps that are not seen within 64 periods.
     pub never: f64,
@@ -47,7 +48,7 @@ pub struct Latency {
 }
 
 impl Latency {
-    /// Takes all steps; `None` without any.
+    /// Combines all steps; `None` without any.
     pub(super) fn of<'a>(steps: impl Iterator<Item = &'a Option<u32>>) -> Option<Self> {
         let mut periods: Vec<_> = steps.map(|seen| seen.map_or(f64::INFINITY, f64::from)).collect();
         if periods.is_empty() {
@@ -63,24 +64,24 @@ impl Latency {
     }
 }
 
-/// Time until a wall is seen that has come nearer for the first time, so that no memory of places helps, over all
-/// sensors that it concerns, in milliseconds from the step to the echo of the first right reading that is accepted.
+/// Time until a wall is seen that comes nearer for the first time, so that memory of places does not help: milliseconds
+/// from the step to the echo of the first accepted right reading, over all sensors concerned.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct NewStep {
     /// Number of steps of sensors that were counted.
     pub steps: usize,
     /// Half of the steps are seen within this time; `None` if more than half never are.
     pub median_ms: Option<f64>,
-    /// Nine in ten are.
+    /// Time within which nine in ten are seen.
     pub p90_ms: Option<f64>,
-    /// Nineteen in twenty are.
+    /// Time within which nineteen in twenty are seen.
     pub p95_ms: Option<f64>,
     /// Share of the steps that are not seen within 64 periods.
     pub never: f64,
 }
 
 impl NewStep {
-    /// Takes all steps; `None` without any.
+    /// Combines all steps; `None` without any.
     pub(super) fn of<'a>(steps: impl Iterator<Item = &'a Option<f64>>) -> Option<Self> {
         let mut seen: Vec<_> = steps.map(|seen| seen.unwrap_or(f64::INFINITY)).collect();
         let never = seen.iter().filter(|seen| seen.is_infinite()).count() as f64 / seen.len().max(1) as f64;
@@ -90,7 +91,7 @@ impl NewStep {
     }
 }
 
-/// Lets the scene step from the first world, with the wall far away, to the second and back.
+/// Steps the scene from the first world, with the wall far away, to the second and back.
 pub(super) fn steps(
     worlds: &[World; 2],
     steps: u32,
@@ -111,7 +112,7 @@ pub(super) fn steps(
     Ok(found)
 }
 
-/// Steps as one sensor sees them.
+/// One sensor's view of the steps.
 fn seen(readings: &Readings, sensor: usize, steps: u32, period_s: f64, found: &mut Steps) {
     let of_sensor: Vec<_> = (0..readings.len()).filter(|&n| usize::from(readings.sensor[n]) == sensor).collect();
     for step in 1..=steps {

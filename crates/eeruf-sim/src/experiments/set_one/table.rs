@@ -1,4 +1,4 @@
-//! Set I over many geometries: every method's figures, and how they spread.
+//! Set I over many geometries: every method's figures and their spread.
 
 use serde::Serialize;
 
@@ -46,8 +46,8 @@ pub struct SetOne {
 
 /// Runs Set I: every geometry under each method, on all cores.
 ///
-/// `keep_going` is called now and then, by several threads, with the share that is done, 0 to 1; when its answer is
-/// `false` the run stops. The result does not depend on the number of threads.
+/// Several threads sometimes call `keep_going` with the finished share, 0 to 1; if it returns `false`, the run stops.
+/// The result does not depend on the number of threads.
 ///
 /// # Errors
 /// [`ExperimentError`] for no geometries, more than there are numbers for, no methods or two of one name, for a ring
@@ -81,7 +81,7 @@ pub fn set_one(asked: &SetOneOptions, keep_going: &(dyn Fn(f64) -> bool + Sync))
 }
 
 impl SetOne {
-    /// The table of runs that were made as asked: for each method one for each geometry.
+    /// The table of finished runs: for each method one run for each geometry.
     pub fn of(asked: &SetOneOptions, runs: Vec<Vec<Run>>) -> Self {
         let &SetOneOptions { first, seeds, physics, sensors, period, .. } = asked;
         let methods = named(&asked.methods, runs.iter().map(|runs| Figures::of(runs)));
@@ -96,7 +96,7 @@ fn periods(asked: &SetOneOptions) -> u32 {
     asked.readings.div_ceil(asked.sensors.max(1) as u32)
 }
 
-/// An alcove and the robot before it, as a method has it in Set I; its seed there is the alcove's number.
+/// An alcove and its robot with a method's settings; the world's seed is the alcove's number.
 ///
 /// # Errors
 /// [`WorldError`] for a ring that cannot be.
@@ -111,7 +111,7 @@ pub fn world_of(asked: &SetOneOptions, alcove: &Alcove, entry: &Entry) -> Result
         .with_physics(asked.physics)
 }
 
-/// One alcove under one method: as it is, and with its back wall going to and fro.
+/// Runs one alcove with one method: unchanged, and with its back wall moving back and forth.
 fn run(asked: &SetOneOptions, number: u64, entry: &Entry, progress: &Progress<'_>) -> Result<Run, ExperimentError> {
     if !progress.go_on() {
         return Err(ExperimentError::Stopped);

@@ -1,4 +1,4 @@
-//! A way's figures over placings.
+//! A method's figures over placings.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,13 +7,13 @@ use crate::{
     results::{BeliefShares, Cause, NO_PATH, Readings, Summary},
 };
 
-/// A way's figures over placings; shares are fractions of 1, and what counts sensors or seconds is of one robot.
+/// A method's figures over placings; shares are fractions of 1, and counts and rates are for one robot.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Figures {
     /// Share of the accepted readings that are another robot's sound.
     pub others_of_accepted: Option<Spread>,
-    /// The share of the sensor, of all robots, that accepts the largest share of it, among those with five accepted
-    /// readings.
+    /// Largest share of another robot's sound in one sensor's accepted readings, among all robots' sensors with at
+    /// least five.
     pub others_at_worst: Option<Spread>,
     /// Share of the accepted readings that are foreign sound, of the robot's other sensors or of an earlier firing too.
     pub foreign_of_accepted: Option<Spread>,
@@ -23,19 +23,19 @@ pub struct Figures {
     pub right_echoes_per_s: Option<Spread>,
     /// Share of the time in which what was last believed is right, as in [`BeliefShares`].
     pub belief_right: Option<Spread>,
-    /// The share in which nothing is believed.
+    /// Share of the time in which nothing is believed.
     pub unknown: Option<Spread>,
-    /// The share in which it is foreign sound.
+    /// Share of the time in which foreign sound is believed.
     pub phantom: Option<Spread>,
-    /// The share in which it is an own later echo.
+    /// Share of the time in which an own later echo is believed.
     pub too_far: Option<Spread>,
-    /// The share in which it is an own nearer echo.
+    /// Share of the time in which an own nearer echo is believed.
     pub faint: Option<Spread>,
     /// Sensors that were right under 5 % of the times they fired.
     pub blind: Option<Spread>,
 }
 
-/// The figures that a group of placings is compared by.
+/// The figures by which groups of placings are compared.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Brief {
     /// See [`Figures::others_of_accepted`].
@@ -66,7 +66,7 @@ pub struct Run {
     pub blind: f64,
 }
 
-/// As many readings must be accepted of a sensor that may be the worst.
+/// Least number of accepted readings of a sensor that may count as the worst.
 const ENOUGH: usize = 5;
 
 impl Run {

@@ -1,10 +1,10 @@
 //! Set III: two to six robots of one make, near each other, all firing by the same method with clocks of their own.
 //!
-//! The paper claims that a ring also rejects what other robots send (Sec. 5), and measures it for no two that are
-//! alike. Here rings of twelve sensors all round, of one period, window and table, stand, meet or follow each other in
-//! a corridor and in a hall; nothing but the phase and the drift of their clocks tells them apart. The rooms, places
-//! and drifts are choices. As [rings are fired today](crate::Method::is_sketch) they have two arrays of six, four
-//! groups of three, and modules that rest for 65 ms, a Polaroid 6500's; else the defaults of [`Sketch`](crate::Sketch).
+//! The paper claims that a ring also rejects other robots' sound (Sec. 5), but does not measure it for two alike. Here
+//! rings of twelve sensors all round, of one period, window and table, stand, meet or follow each other in a corridor
+//! and in a hall; only the phases and drifts of their clocks differ. The rooms, places and drifts are choices. With the
+//! methods of [today's rings](crate::Method::is_sketch) they have two arrays of six, four groups of three, and modules
+//! that rest for 65 ms, a Polaroid 6500's; else the defaults of [`Sketch`](crate::Sketch).
 
 mod figures;
 mod placing;

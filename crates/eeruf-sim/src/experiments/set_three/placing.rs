@@ -1,4 +1,4 @@
-//! Where the robots of Set III are, and how they drive.
+//! Places and motions of the robots of Set III.
 
 use core::f64::consts::{PI, TAU};
 
@@ -21,9 +21,9 @@ pub const PERIOD: Micros = Micros::from_millis(100);
 pub const SPEED_M_S: f64 = 0.5;
 /// The largest drift of a robot's clock, in millionths: a choice, that of a cheap quartz.
 pub const DRIFT_PPM: f64 = 50.0;
-/// Distance of robots that stand beside each other, from middle to middle.
+/// Distance between the middles of robots that stand beside each other.
 const NEAREST_M: f64 = 1.4;
-/// The farthest that neighbours in a row are from each other.
+/// Greatest distance between neighbours in a row.
 const FARTHEST_M: f64 = 2.6;
 
 /// Surroundings of the robots.
@@ -40,11 +40,11 @@ pub enum Site {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Arrangement {
-    /// The robots stand, each with any heading.
+    /// The robots stand, each at a random heading.
     Standing,
     /// Two rows drive past each other, side by side.
     Meeting,
-    /// One row drives one way.
+    /// One row of robots drives in one direction.
     Following,
 }
 
@@ -62,7 +62,8 @@ pub struct Placing {
 }
 
 impl Placing {
-    /// The placing that a number stands for. Thirty in a row have each place, arrangement and number of robots once.
+    /// The placing that a number stands for. Thirty consecutive numbers cover each place, arrangement and number of
+    /// robots once.
     pub fn random(number: u64) -> Self {
         let place = if number.is_multiple_of(2) { Site::Corridor } else { Site::Hall };
         let arrangement =
@@ -121,7 +122,7 @@ impl Placing {
     }
 }
 
-/// Places on a line, about its middle.
+/// Places on a line, centred on its middle.
 fn row(count: usize, random: &mut Random) -> Vec<f64> {
     let mut at = 0.0;
     let mut places: Vec<f64> = (0..count)
@@ -150,7 +151,7 @@ fn meeting(count: usize, random: &mut Random) -> Vec<(Vector, f64)> {
     (0..count).map(each).collect()
 }
 
-/// Anywhere in the middle of a hall, none too near another one.
+/// Random places in the middle of a hall, not too near each other.
 fn scattered(count: usize, random: &mut Random) -> Vec<(Vector, f64)> {
     let mut places: Vec<(Vector, f64)> = Vec::with_capacity(count);
     while places.len() < count {

@@ -1,4 +1,4 @@
-//! Set III over many placings: every method's figures, and how they spread.
+//! Set III over many placings: every method's figures and their spread.
 
 use serde::Serialize;
 
@@ -25,8 +25,8 @@ pub struct SetThreeOptions {
     pub seeds: u64,
     /// The first placing's number. The default is [`FIRST`]: parameters were tuned on numbers below 2,000.
     pub first: u64,
-    /// Number of periods for which each placing is simulated. The default is 40, 4 s: robots that meet are then side by
-    /// side.
+    /// Number of periods for which each placing is simulated. The default is 40 (4 s), after which meeting robots are
+    /// side by side.
     pub periods: u32,
     /// The methods. The default is [`usual`].
     pub methods: Vec<Entry>,
@@ -38,7 +38,7 @@ pub struct SetThreeOptions {
     pub gain: GainProfile,
 }
 
-/// The methods that Set III compares unless others are asked for.
+/// The methods that Set III compares by default.
 pub fn usual() -> Vec<Entry> {
     use Method::{Dither, Eeruf, Flow, Sequential, SequentialVotes, Simultaneous};
     Entry::all([Simultaneous, Sequential, SequentialVotes, Dither, Eeruf, Flow])
@@ -88,10 +88,10 @@ pub struct Group {
     /// Surroundings of the robots; `None` for any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub place: Option<Site>,
-    /// The robots' arrangement; none for any.
+    /// The robots' arrangement; `None` for any.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub arrangement: Option<Arrangement>,
-    /// Number of robots; none for any number.
+    /// Number of robots; `None` for any number.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub robots: Option<usize>,
     /// Number of these placings.
@@ -103,8 +103,8 @@ pub struct Group {
 
 /// Runs Set III: every placing under each method, on all cores.
 ///
-/// `keep_going` is called now and then, by several threads, with the share that is done, 0 to 1; when its answer is
-/// `false` the run stops. The result does not depend on the number of threads.
+/// Several threads sometimes call `keep_going` with the finished share, 0 to 1; if it returns `false`, the run stops.
+/// The result does not depend on the number of threads.
 ///
 /// # Errors
 /// [`ExperimentError`] for no placings, more than there are numbers for, no methods or two of one name, and if it was
@@ -148,7 +148,7 @@ pub fn set_three(
 }
 
 impl SetThree {
-    /// The table of runs that were made as asked: for each method one for each placing.
+    /// The table of finished runs: for each method one run for each placing.
     pub fn of(asked: &SetThreeOptions, runs: Vec<Vec<Run>>) -> Self {
         let &SetThreeOptions { first, seeds, periods, physics, .. } = asked;
         let methods = named(&asked.methods, runs.iter().map(|runs| Figures::of(runs)));

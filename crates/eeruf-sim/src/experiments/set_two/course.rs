@@ -1,4 +1,4 @@
-//! A course: a lab with poles about 1.6 m apart (Fig. 6), which a robot can certainly pass.
+//! A course: a lab with poles about 1.6 m apart (Fig. 6), with a way that a robot can pass.
 
 use eeruf_core::Micros;
 
@@ -15,17 +15,17 @@ use crate::{
 pub const ROOM_M: [f64; 2] = [10.0, 6.0];
 /// The poles are 8 mm thick (Sec. 4).
 pub const POLE_RADIUS_M: f64 = 0.004;
-/// Between poles of the unshaken lattice, in metres.
+/// Distance between poles of the regular lattice, in metres.
 const SPACING_M: f64 = 1.6;
 /// Largest distance that a pole is moved from its place, along either axis.
 const SHAKE_M: f64 = 0.2;
-/// No two poles are nearer.
+/// Least distance of two poles, in metres.
 const LEAST_GAP_M: f64 = 1.4;
-/// A way exists on which a disc of this radius touches nothing: the platform's corners are 0.53 m from its middle.
+/// Radius of a disc for which a free way exists: the platform's corners are 0.53 m from its middle.
 const PASSABLE_M: f64 = 0.6;
-/// The cells that the way is looked for on.
+/// Size of the cells for finding that way.
 const CELL_M: f64 = 0.1;
-/// Start of the robot, and the line that it finishes at.
+/// Start of the robot, and the finishing line.
 const START_M: [f64; 2] = [1.0, 3.0];
 pub(super) const FINISH_X_M: f64 = 8.2;
 /// Target of the steering.
@@ -114,7 +114,7 @@ impl Course {
         Robot::ring(pose, SENSORS, SPACING_DEG.to_radians(), RADIUS_M, Transducer::POLAROID_6500)
     }
 
-    /// The platform with its square body, and the sensors of its ring where their axes leave that: on its edge.
+    /// The platform with its square body; the sensors of its ring are on its edge, along their axes.
     pub fn robot_with_body(&self, labmate: &LabMate) -> Robot {
         let mut robot = Robot { body: Some(labmate.body()), ..self.robot() };
         for sensor in &mut robot.sensors {
@@ -126,8 +126,8 @@ impl Course {
         robot
     }
 
-    /// The other robot: 24 sensors all around that fire 24 times in 80 ms, standing at a place, its clock 40 ppm fast
-    /// and started at any time.
+    /// The other robot: 24 sensors all around that fire 24 times in 80 ms, standing at a place, with a clock 40 ppm
+    /// fast and a random start.
     pub fn second_robot(&self, at: Point) -> Robot {
         let mut random = Random::new(self.number).of(3);
         let pose = Pose::new(at.coords, random.between(-3.1, 3.1));
@@ -140,9 +140,8 @@ impl Course {
         }
     }
 
-    /// The lab with its robots. If the first one has a body, the other one has one too: the disc that its ring is on.
-    /// Sound is followed for two bounces at walls, or one at a pole: a choice, for speed.
-    /// Fainter sound over more bounces is left out.
+    /// The lab with its robots. If the first one has a body, so has the other: the disc of its ring. Sound is followed
+    /// for two bounces at walls, or one at a pole: a choice, for speed. Fainter sound over more bounces is left out.
     ///
     /// # Errors
     /// [`WorldError`] if something does not fit.
@@ -155,11 +154,11 @@ impl Course {
     }
 }
 
-/// Number of bounces that sound is followed for, at walls alone and if a pole is among them.
+/// Largest number of bounces that sound is followed for, at walls alone, and with a pole among them.
 const ORDER: u32 = 2;
 const POLE_ORDER: u32 = 1;
 
-/// A lattice of triangles over the middle of the lab, every pole shaken and the whole lattice moved.
+/// A triangular lattice in the middle of the lab, every pole shaken and the whole lattice shifted.
 fn shaken(random: &mut Random) -> Vec<Point> {
     let column_m = SPACING_M * 0.75f64.sqrt();
     let aside = random.between(-0.5 * SPACING_M, 0.5 * SPACING_M);

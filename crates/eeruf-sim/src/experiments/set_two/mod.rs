@@ -1,7 +1,7 @@
 //! Set II (Sec. 4): a `LabMate` drives through a course of thin poles, steered by what its ring reads: HIMM grid,
 //! vector field histogram, platform, in a closed loop.
 //!
-//! The ring is core's own under the event simulation, as everywhere; only where the robot is is not known beforehand.
+//! The ring is core's own under the event simulation; only the robot's way is not known beforehand.
 
 mod course;
 mod figures;

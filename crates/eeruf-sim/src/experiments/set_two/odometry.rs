@@ -1,4 +1,4 @@
-//! The robot's own idea of its way: dead reckoning by two wheels that are not measured exactly.
+//! The robot's estimate of its own way: dead reckoning by two wheels with errors.
 
 use crate::{
     geometry::Pose,
@@ -6,34 +6,34 @@ use crate::{
     world::{Normal, Random},
 };
 
-/// From wheel to wheel, in metres: a choice.
+/// Distance between the wheels, in metres: a choice.
 const TRACK_M: f64 = 0.34;
 
-/// Errors of the platform's odometry. What it tells the ring of a change in readings stays exact: at the default noise
-/// that change would be wrong by some 3 us, a fiftieth of `T_delta`.
+/// Errors of the platform's odometry. The expected change of readings stays exact: the default noise would alter it by
+/// some 3 us, a fiftieth of `T_delta`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OdometryNoise {
-    /// Root mean square by which the travel of each wheel is misjudged for all of a course, as a share of it: wheels
-    /// have not quite the diameters that they are taken to have.
+    /// Root mean square of each wheel's scale error, constant for a course: wheels do not have exactly their assumed
+    /// diameters.
     pub scale_rms: f64,
     /// Root mean square of each wheel's random error after a metre, in metres; it grows with the root of the way.
     pub slip_m_rms: f64,
 }
 
 impl Default for OdometryNoise {
-    /// A thousandth of the way, and 2 mm after a metre: at the end of a course the robot takes itself to be some
-    /// decimetre from where it is. A choice, of the size that platforms with hard wheels on a smooth floor reach.
+    /// A thousandth of the way, and 2 mm after a metre: at the end of a course the estimate is off by about a
+    /// decimetre. A choice, typical of platforms with hard wheels on a smooth floor.
     fn default() -> Self {
         Self { scale_rms: 0.001, slip_m_rms: 0.002 }
     }
 }
 
 impl OdometryNoise {
-    /// The robot knows where it is.
+    /// No errors: the robot knows where it is.
     pub const NONE: Self = Self { scale_rms: 0.0, slip_m_rms: 0.0 };
 }
 
-/// The way that the robot takes itself to have driven.
+/// The robot's estimate of its way.
 pub(super) struct Odometry {
     noise: OdometryNoise,
     /// Scale errors of each wheel's travel, left and right.
@@ -43,19 +43,19 @@ pub(super) struct Odometry {
 }
 
 impl Odometry {
-    /// At the start, where the robot knows its place. The noise is the course's, whatever the method.
+    /// Odometry at the start, where the robot knows its place. Each course has its noise, whatever the method.
     pub(super) fn new(noise: OdometryNoise, start: &Driven, course: u64) -> Self {
         let mut random = Random::new(course).of(4);
         let scales = Normal::shared().pair(random.bits()).map(|normal| noise.scale_rms * f64::from(normal));
         Self { noise, scales, random, state: *start }
     }
 
-    /// Returns the pose that the robot takes itself to have.
+    /// Returns the estimated pose.
     pub(super) fn pose(&self) -> &Pose {
         &self.state.pose
     }
 
-    /// The platform was driven for a short time, and now moves so.
+    /// Records a short motion of the platform, and its present speeds.
     pub(super) fn drove(&mut self, platform: &Driven, for_s: f64) {
         let (way_m, turned) = (platform.speed_m_s * for_s, platform.turn_rad_s * for_s);
         let aside_m = 0.5 * TRACK_M * turned;
@@ -70,7 +70,7 @@ impl Odometry {
         self.state.pose = self.state.moment(for_s).pose;
     }
 
-    /// Returns the pose that the robot takes something to have that really is at another, from where it really is now.
+    /// Returns the estimated pose of something at a true pose, given the robot's true pose.
     pub(super) fn estimate_of(&self, platform: &Pose, real: &Pose) -> Pose {
         self.state.pose * platform.inverse() * real
     }
@@ -81,7 +81,7 @@ mod tests {
     use super::*;
     use crate::navigation::LabMate;
 
-    /// Drives eight metres in a bow, and says how far off the odometry then is.
+    /// The odometry's error after eight metres in a bow.
     fn off_m(noise: OdometryNoise, course: u64) -> f64 {
         let labmate = LabMate::default();
         let mut state = Driven::at_rest(Pose::identity());

@@ -34,8 +34,7 @@ pub struct SetTwoOptions {
     pub labmate: LabMate,
     /// True if odometry gives the ring by how much readings should change from the robot's own motion.
     pub odometry: bool,
-    /// `T_delta`. With odometry it need not leave room for motion, and readings agree by accident the more rarely the
-    /// smaller it is.
+    /// `T_delta`. With odometry it need not allow for motion; the smaller it is, the fewer readings agree by accident.
     pub t_delta: Micros,
     /// Effects in the lab. The default is [`Physics::DEFAULT`].
     pub physics: Physics,
@@ -43,9 +42,8 @@ pub struct SetTwoOptions {
     pub room: Option<Room>,
     /// The gain of the robot's receivers. The default is [`GainProfile::Constant`].
     pub gain: GainProfile,
-    /// True if robots have bodies: the platform its square, with the ring on its edge, the other robot the disc that
-    /// its ring is on, which is then an obstacle to sound and to the platform. The default is without, as pilots were
-    /// tuned.
+    /// True if robots have bodies: the platform a square with the ring on its edge, the other robot the disc of its
+    /// ring, an obstacle to sound and to the platform. The default is without, as for tuning the pilots.
     pub bodies: bool,
     /// Errors of the platform's odometry.
     pub odometry_noise: OdometryNoise,
@@ -54,7 +52,7 @@ pub struct SetTwoOptions {
 }
 
 impl SetTwoOptions {
-    /// The robot of a course as these options have it.
+    /// The robot of a course under these options.
     #[must_use]
     pub fn robot(&self, robot: Robot) -> Robot {
         let transducer = Transducer { gain: self.gain, ..robot.transducer };

@@ -1,5 +1,5 @@
-//! The closed loop: accepted readings fill the histogram grid from where they were taken, the vector field histogram
-//! says where to steer and how fast, and the platform follows as well as it can.
+//! The closed loop: accepted readings fill the histogram grid, the vector field histogram decides direction and speed,
+//! and the platform follows within its limits.
 
 use eeruf_core::ReadingKind;
 
@@ -17,17 +17,17 @@ use crate::{
     world::World,
 };
 
-/// The platform is driven in steps of this length, in nanoseconds.
+/// Time step of the platform, in nanoseconds.
 const STEP_NS: u64 = 5_000_000;
-/// Number of those that go by between two looks at the grid: 30 ms, as long as one took on the paper's computer.
+/// Number of steps between two decisions: 30 ms, the time that one took on the paper's computer.
 const STEPS_PER_LOOK: u64 = 6;
 /// The width of the grid's cells, in metres, as in the papers.
 const CELL_M: f64 = 0.1;
-/// An echo farther than this from every pole and wall is of a phantom: cell and beam are not much narrower.
+/// Distance from every pole and wall beyond which an echo is a phantom: cell and beam are not much narrower.
 const PHANTOM_M: f64 = 0.35;
-/// A cell from this value on counts as an obstacle when phantoms are counted.
+/// Value from which on a cell counts as an obstacle when phantoms are counted.
 const CERTAIN: u8 = 6;
-/// A pole that came nearer than this to the platform's middle should have been seen.
+/// Distance from the platform's middle within which a pole should have been seen.
 const PASSED_M: f64 = 1.0;
 
 /// Steers the first robot of a world.
@@ -38,13 +38,13 @@ pub(super) struct Pilot<'w> {
     state: Driven,
     steps: u64,
     steps_most: u64,
-    /// Pose that it takes itself to have: what the grid is filled by and what it steers by.
+    /// Estimated pose, by which the grid is filled and the robot steered.
     odometry: Odometry,
     grid: Himm,
-    /// The readings entered from where the robot really was, to find phantoms in.
+    /// The grid filled from the true poses, for finding phantoms.
     real_grid: Himm,
     wanted: (f64, f64),
-    /// For each pole: whether an echo of it was entered, and how near the robot's middle came to it.
+    /// For each pole: true if an echo of it was entered, and its least distance from the robot's middle.
     poles: Vec<(bool, f64)>,
     run: Run,
 }
@@ -93,7 +93,7 @@ impl<'w> Pilot<'w> {
             && self.discs().all(|(centre, radius_m)| (centre - point).norm() - radius_m > PHANTOM_M)
     }
 
-    /// Centres and radii of the other robots' bodies, which stand.
+    /// Centres and radii of the other robots' bodies, which do not move.
     fn discs(&self) -> impl Iterator<Item = (Point, f64)> {
         self.world.robots()[1..].iter().filter_map(|robot| match robot.body {
             Some(Body::Disc(radius_m)) => Some((Point::from(robot.pose.translation.vector), radius_m)),
@@ -116,13 +116,13 @@ impl<'w> Pilot<'w> {
         self.run.track.push(TrackPoint { time_s, x_m, y_m, heading_rad: pose.rotation.angle(), speed_m_s });
     }
 
-    /// Ends the course by a contact.
+    /// Ends the course with a contact.
     pub(super) fn touched(&mut self) {
         self.run.ending = Ending::Contact;
         self.run.nearest_m = self.run.nearest_m.max(0.0);
     }
 
-    /// Drives a step on; `false` when the course is over.
+    /// Drives one step; `false` when the course is over.
     fn step(&mut self) -> bool {
         if self.steps.is_multiple_of(STEPS_PER_LOOK) {
             self.look();

@@ -13,18 +13,18 @@ use crate::{
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 #[non_exhaustive]
 pub enum Pilots {
-    /// Each method has a pilot of its own, all found by the same search at the same cost: `cargo lab tune`, on
-    /// courses below 2,000, scored equally alone, behind a second robot and ahead of one. The default.
+    /// Each method has its own pilot, found by the same search with the same effort: `cargo lab tune`, on courses below
+    /// 2,000, scored equally alone, behind a second robot and ahead of one. The default.
     #[default]
     Own,
-    /// One for all, which an earlier search found by the score of `eeruf` above all. Its figures say how well each
-    /// method does with a pilot that was made for EERUF, not which method is best.
+    /// One pilot for all, which an earlier search optimised mainly for `eeruf`. Its figures show how each method does
+    /// with a pilot made for EERUF, not which method is best.
     Shared,
     /// The published vector field histogram, [`Vfh::default`], with echoes entered from up to 2.0 m, for all.
     Published,
     /// The published pilot with the grid's growth rate operator ([`Himm::growth`](crate::Himm::growth)).
     PublishedGro,
-    /// This one, for all.
+    /// A given pilot, for all.
     Given(Piloting),
 }
 
@@ -56,8 +56,8 @@ impl Pilots {
     }
 }
 
-/// The method whose own pilot steers, which the search finds: a method that fires as another is steered as that one is,
-/// and one without a pilot of its own as one by one.
+/// The method whose pilot is used: a method that fires like another uses that one's, and one without its own uses that
+/// of one by one.
 pub fn steered_as(method: Method) -> Method {
     match method {
         Method::AdaptiveMultiEcho => Method::MultiEcho,
@@ -88,7 +88,7 @@ impl FromStr for Pilots {
     }
 }
 
-/// A name that no pilot has.
+/// A name that is no pilot's.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownPilot(pub String);
 

@@ -6,11 +6,11 @@ use serde::{Deserialize, Deserializer, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Ending {
-    /// Over the finishing line.
+    /// The robot crossed the finishing line.
     Finished,
     /// The robot touched a pole or a wall.
     Contact,
-    /// The robot was still under way, or stuck, when the time was over.
+    /// The robot was still driving, or stuck, when the time was over.
     TimeOut,
 }
 
@@ -32,9 +32,9 @@ pub struct TrackPoint {
 /// A cell of the grid that is not empty.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Cell {
-    /// The middle, in metres.
+    /// The middle's x, in metres.
     pub x_m: f64,
-    /// The middle, in metres.
+    /// The middle's y, in metres.
     pub y_m: f64,
     /// The certainty, 1 to 15.
     pub value: u8,
@@ -59,7 +59,7 @@ pub struct Run {
     pub nearest_m: f64,
     /// Number of readings its sensors took.
     pub readings: u32,
-    /// Number of those that were not accepted.
+    /// Number of readings that were not accepted.
     pub rejected: u32,
     /// Number of readings that were accepted and wrong.
     pub wrong: u32,
@@ -69,12 +69,12 @@ pub struct Run {
     pub phantom_cells: u32,
     /// Number of poles the robot came near.
     pub poles_passed: u32,
-    /// Number of those that never had an echo entered into the grid.
+    /// Number of poles passed that never had an echo entered into the grid.
     pub poles_missed: u32,
     /// Poses on its way, every 30 ms.
     #[serde(default)]
     pub track: Vec<TrackPoint>,
-    /// The grid in the end.
+    /// The grid at the end.
     #[serde(default)]
     pub grid: Vec<Cell>,
 }
@@ -85,7 +85,7 @@ fn infinite<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error>
 }
 
 impl Run {
-    /// A course that has just begun; it runs out of time unless something else happens.
+    /// A course that has just begun; it times out unless something else happens.
     pub(super) fn begun(course: u64) -> Self {
         Self {
             course,

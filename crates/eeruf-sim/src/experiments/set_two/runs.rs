@@ -1,4 +1,4 @@
-//! Set II over many courses: every method's figures, and the speed that each sustains.
+//! Set II over many courses: every method's figures, and the highest speed of each.
 
 use serde::Serialize;
 
@@ -22,11 +22,11 @@ use crate::{
     world::{Robot, World},
 };
 
-/// Time for which a robot may try.
+/// Time limit of a course.
 const TIME_S: f64 = 40.0;
 
-/// Number of readings that [`Method::MultiEcho`] compares. Pairs of many echoes agree by accident, the more the more
-/// foreign sound there is; three running do so far more rarely, and a sensor that hears past foreign sound can afford
+/// Number of readings that [`Method::MultiEcho`] compares. With many echoes, pairs agree by accident, and more often
+/// with more foreign sound. Three in a row do so far more rarely, and sensors that report several echoes can afford
 /// them.
 pub const MULTI_ECHO_CONSECUTIVE: u8 = 3;
 
@@ -58,9 +58,8 @@ pub struct SetTwo {
     pub runs: Vec<Vec<Run>>,
 }
 
-/// Runs Set II: every course by every method, on all cores. `keep_going` is called now and then, by several threads,
-/// with the share that is done, 0 to 1; when its answer is `false` the run stops. The result does not depend on the
-/// number of threads.
+/// Runs Set II: every course by every method, on all cores. Several threads sometimes call `keep_going` with the
+/// finished share, 0 to 1; if it returns `false`, the run stops. The result does not depend on the number of threads.
 ///
 /// # Errors
 /// [`ExperimentError`] for no courses, more than there are numbers for, or no methods, and if it was stopped.
@@ -92,7 +91,7 @@ pub fn set_two(options: &SetTwoOptions, keep_going: &(dyn Fn(f64) -> bool + Sync
 }
 
 impl SetTwo {
-    /// The table of runs that were made as asked: for each method one for each course.
+    /// The table of finished runs: for each method one run for each course.
     pub fn of(options: &SetTwoOptions, runs: Vec<Vec<Run>>) -> Self {
         let methods = named(&options.methods, runs.iter().map(|runs| Figures::of(runs)));
         let &SetTwoOptions { first, seeds, second_robot, pilots, physics, bodies, .. } = options;
@@ -116,19 +115,19 @@ fn run_course(
     Ok(drive(options, entry, number, &|_| progress.go_on())?.run)
 }
 
-/// One course by one method, with all that was read.
+/// One course by one method, with all readings.
 #[derive(Debug)]
 pub struct Drive {
-    /// Walls, poles and robots; where the first robot is, `run.track` says.
+    /// Walls, poles and robots; `run.track` has the way of the first robot.
     pub world: World,
-    /// Readings of the robots' sensors; nothing where bodies are on and one touched something.
+    /// Readings of the robots' sensors; empty if bodies are on and one touched something.
     pub readings: Readings,
     /// The outcome.
     pub run: Run,
 }
 
-/// Drives one course by one method. `keep_going` is called now and then with the share of the longest time, 0 to 1;
-/// when its answer is `false` the drive stops.
+/// Drives one course by one method. `keep_going` is sometimes called with the passed share of the time limit, 0 to 1;
+/// if it returns `false`, the drive stops.
 ///
 /// # Errors
 /// [`ExperimentError`] for a ring that cannot be, and if it was stopped.
@@ -170,7 +169,7 @@ pub fn drive(
     Ok(Drive { world, readings, run })
 }
 
-/// One speed of a sweep.
+/// One top speed of a sweep.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SpeedStep {
     /// The platform's highest speed, in m/s.

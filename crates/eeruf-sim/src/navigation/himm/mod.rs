@@ -30,8 +30,8 @@ pub const DECREMENT: u8 = 1;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Himm {
-    /// Row by row; a cell's index here is its lattice index modulo `side`, so that nothing is copied when the window
-    /// moves.
+    /// Values, row by row; a cell's index here is its lattice index modulo `side`, so that moving the window copies
+    /// nothing.
     values: Vec<u8>,
     side: i64,
     cell_m: f64,
@@ -51,7 +51,7 @@ impl Himm {
     /// An empty grid of `side` times `side` cells, each `cell_m` metres wide, around the scene's origin. The papers use
     /// 33 cells of 0.1 m.
     ///
-    /// A side of none counts as one, one above 4096 as 4096, and a width that is not positive as 0.1 m.
+    /// A side of 0 counts as 1, one above 4096 as 4096, and a width that is not positive as 0.1 m.
     pub fn new(side: usize, cell_m: f64) -> Self {
         let side = side.clamp(1, 4096);
         let cell_m = if cell_m > 0.0 && cell_m.is_finite() { cell_m } else { 0.1 };
@@ -162,7 +162,7 @@ impl Himm {
         cells.map(|cell| self.values[self.index(cell)]).sum()
     }
 
-    /// Takes one from each cell that the axis crosses between the two ranges, but not from `hit` or what lies behind
+    /// Takes one from each cell that the axis crosses between the two ranges, except from `hit` and the cells behind
     /// it.
     fn clear_until(&mut self, sensor: Point, heading_rad: f64, near_m: f64, range_m: f64, hit: Option<[i64; 2]>) {
         let near_m = near_m.max(0.0);

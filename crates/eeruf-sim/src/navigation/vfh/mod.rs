@@ -1,4 +1,4 @@
-//! The vector field histogram (VFH): from a certainty grid to where to steer and how fast to go.
+//! The vector field histogram (VFH): from a certainty grid to direction and speed.
 //!
 //! J. Borenstein and Y. Koren, "The vector field histogram - fast obstacle avoidance for mobile robots", IEEE
 //! Transactions on Robotics and Automation 7(3), 1991, pp. 278-288. In two steps: the cells around the robot become a
@@ -32,7 +32,7 @@ pub struct Vfh {
     pub smoothing: usize,
     /// A sector with a lower density is free. Densities are in units of a fully certain cell beside the robot.
     pub threshold: f64,
-    /// `s_max`: a valley of more sectors is wide. 18 as in the paper.
+    /// `s_max`: number of sectors above which a valley is wide. 18 as in the paper.
     pub wide: usize,
     /// `h_m`: the density ahead at which the robot goes no faster than `speed_min_m_s`.
     pub density_max: f64,
@@ -76,8 +76,8 @@ pub struct Steering {
     pub direction_rad: f64,
     /// The valley that was chosen.
     pub valley: Valley,
-    /// The direction leads away from the target, more than 90 degrees off: the way there is blocked, and the robot is,
-    /// or soon will be, in a dead end.
+    /// True if the direction leads away from the target, by more than 90 degrees: the way there is blocked, and the
+    /// robot is in a dead end or about to enter one.
     pub trapped: bool,
 }
 
@@ -146,8 +146,8 @@ impl Vfh {
         valleys
     }
 
-    /// Returns the direction in which to steer to come to a target in the direction `target_rad`: into the valley
-    /// nearest to it. `None` if every direction is blocked.
+    /// Returns the direction to steer in for a target in the direction `target_rad`: into the valley nearest to it.
+    /// `None` if every direction is blocked.
     ///
     /// A narrow valley is steered through its middle. Of a wide one only the `s_max` sectors nearest to the target
     /// count as the valley, so that an obstacle is passed at a distance of half as many sectors, unless the target
@@ -161,7 +161,7 @@ impl Vfh {
         Some(Steering { direction_rad, valley: nearest, trapped })
     }
 
-    /// Runs all steps: returns where to steer from `place` to come to `target`.
+    /// Runs all steps: returns the direction to steer in from `place` to reach `target`.
     ///
     /// ```
     /// use eeruf_sim::{Himm, Point, Vfh};
@@ -187,7 +187,7 @@ impl Vfh {
 
     /// Drives from a pose to a target: the speed ahead in m/s, and the rate of turn in rad/s. A steering error of a
     /// radian asks for `turn_gain` rad/s, at most `turn_most_rad_s`; the farther the heading is off, the slower it
-    /// goes. Where every way is blocked it stands and looks around. `turn_rad_s` is how fast it turns now.
+    /// goes. If every way is blocked, it stops and turns on the spot. `turn_rad_s` is its present rate of turn.
     ///
     /// ```
     /// use eeruf_sim::{Himm, Point, Pose, Vfh};
@@ -214,7 +214,7 @@ impl Vfh {
         (self.speed(&smoothed, heading, turn_rad_s) * libm::cos(error).max(0.0), turn)
     }
 
-    /// The direction that a valley is taken in.
+    /// The direction in which a valley is entered.
     fn through(&self, valley: &Valley, target: f64) -> f64 {
         if valley.sectors == SECTORS {
             return target;

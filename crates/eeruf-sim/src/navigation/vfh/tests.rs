@@ -29,7 +29,7 @@ fn walls(lines: &[([f64; 2], [f64; 2])]) -> Himm {
     grid
 }
 
-/// Drives a point along the steering directions, 5 cm at a time; the nearest that it came to a cell, and where it was.
+/// Drives a point along the steering directions, 5 cm at a time; returns its least distance to a cell, and its places.
 fn drive(grid: &Himm, from: Point, target: Point) -> (f64, Vec<Point>) {
     let (mut place, mut track, mut nearest) = (from, vec![from], f64::INFINITY);
     while (target - place).norm() > 0.3 && track.len() < 1000 {

@@ -9,8 +9,8 @@ use spade::{ConstrainedDelaunayTriangulation, Point2, Triangulation};
 use std::collections::HashMap;
 
 impl Mesh {
-    /// Builds the mesh from distinct vertices and pieces of walls that do not cross.
-    /// It reaches beyond the walls and the `landmarks`, which are not part of it.
+    /// Builds the mesh from distinct vertices and pieces of walls that do not cross. The mesh extends beyond the walls
+    /// and the `landmarks`, which are not part of it.
     pub(crate) fn build(
         mut vertices: Vec<Point>,
         pieces: &[Piece],

@@ -1,4 +1,4 @@
-//! Edges: where a wall ends freely, or two meet at a corner that juts out. Sound bends around them.
+//! Edges: free ends of walls, and corners that jut out. Sound bends around them.
 
 use core::f64::consts::{PI, TAU};
 
@@ -6,7 +6,7 @@ use super::Piece;
 use crate::geometry::Point;
 use crate::scene::wall::Wall;
 
-/// A corner opens by more than a straight wall only if by this much more, in radians: a choice, far above rounding.
+/// Least angle by which a corner must open further than a straight wall, in radians: a choice, far above rounding.
 const LEAST_TURN_RAD: f64 = 1e-6;
 
 /// An edge with the open space around it.
@@ -14,14 +14,14 @@ const LEAST_TURN_RAD: f64 = 1e-6;
 pub struct Edge {
     /// Position.
     pub at: Point,
-    /// The direction of one of its faces, from the edge along the wall; the open space begins there, counter-clockwise.
+    /// The direction of one face, from the edge along the wall; the open space begins there, counter-clockwise.
     pub face_rad: f64,
     /// Angle of the open space around the edge: more than half a turn, a whole one at a wall's free end.
     pub outside_rad: f64,
 }
 
 impl Edge {
-    /// The direction of a point, from the face through the open space, in radians; none in what is solid.
+    /// The direction of a point, from the face through the open space, in radians; `None` inside the solid.
     pub(crate) fn around(&self, point: Point) -> Option<f64> {
         let out = point - self.at;
         let angle = (libm::atan2(out.y, out.x) - self.face_rad).rem_euclid(TAU);
@@ -29,7 +29,7 @@ impl Edge {
     }
 }
 
-/// All edges of these pieces of wall, by the number of their vertex. Openings have none.
+/// All edges of these pieces of wall, with the numbers of their vertices. Openings have none.
 pub(crate) fn edges_of(vertices: &[Point], pieces: &[Piece], walls: &[Wall]) -> Vec<Edge> {
     let mut faces: Vec<Vec<f64>> = vec![Vec::new(); vertices.len()];
     for piece in pieces.iter().filter(|piece| !walls[piece.wall].is_open()) {

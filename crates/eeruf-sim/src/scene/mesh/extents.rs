@@ -1,5 +1,5 @@
-//! Extents of walls: where the straight surface ends that sound is reflected by. Pieces that continue each other are
-//! one surface; it ends where a wall does and at corners that jut out, and not at corners of less than half a turn.
+//! Extents of walls: the ends of straight reflecting surfaces. Pieces that continue each other are one surface; it ends
+//! at the end of a wall and at corners that jut out, but not at corners of less than half a turn.
 
 use core::f64::consts::{PI, TAU};
 
@@ -8,30 +8,30 @@ use super::edges::Edge;
 use crate::geometry::{Point, Vector};
 use crate::scene::wall::{Faces, Wall};
 
-/// Pieces whose directions differ by less continue each other, in radians: a choice, half a degree. At a decimetre from
-/// such a bend, half a first Fresnel zone at 1 m, an echo is out of step by less than a quarter of a wavelength.
+/// Angle in radians below which two pieces continue each other: a choice, half a degree. At a decimetre from such a
+/// bend, half a first Fresnel zone at 1 m, an echo is out of step by less than a quarter of a wavelength.
 const STRAIGHT_RAD: f64 = 0.0087;
 
 /// The left and the right side of a wall, looking from its start to its end.
 const LEFT: usize = 0;
 const RIGHT: usize = 1;
 
-/// Where a surface ends, first towards its start and then towards its end. None where another wall meets it at less
-/// than half a turn: what lies beyond the corner is there as an image, and nothing is bent.
+/// The two ends of a surface, first towards its start and then towards its end. `None` if another wall meets it at less
+/// than half a turn: the part beyond the corner exists as an image, and nothing is diffracted.
 pub(crate) type Ends = [Option<End>; 2];
 
 /// One end of a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct End {
     pub(crate) at: Point,
-    /// The number of the edge there among the scene's, if sound is bent around it.
+    /// The scene's number of the edge there, if sound is diffracted at it.
     pub(crate) edge: Option<u32>,
 }
 
 /// A surface that reflects on its left.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Surface {
-    /// A point of it, and its direction.
+    /// A point of the surface, and its direction.
     pub(crate) on: Point,
     pub(crate) along: Vector,
     pub(crate) ends: Ends,
@@ -49,20 +49,20 @@ struct Stretch {
 /// The ends of all surfaces of a scene.
 #[derive(Debug, Default)]
 pub(crate) struct Extents {
-    /// By wall, and along each from its start.
+    /// Stretches of each wall, in order from its start.
     stretches: Vec<Stretch>,
     /// Surfaces that end at an edge, each once.
     pub(crate) surfaces: Vec<Surface>,
-    /// For each edge where its surfaces begin among the next, with one more start at the end.
+    /// For each edge, the index of its first surface in `at_edges`, with one more entry at the end.
     starts: Vec<u32>,
     /// The surfaces that end at each edge, in their order.
     at_edges: Vec<u32>,
-    /// True if a wall's surface ends anywhere, on either side.
+    /// True if any wall's surface ends, on either side.
     ends: Vec<bool>,
 }
 
 impl Extents {
-    /// Follows each piece of wall both ways on each side. Openings are not there.
+    /// Follows each piece of wall both ways on each side. Openings are ignored.
     pub(crate) fn new(vertices: &[Point], pieces: &[Piece], walls: &[Wall], edges: &[Edge]) -> Self {
         let corners = Corners::new(vertices, pieces, walls);
         let edges_in_all = edges.len();
@@ -127,7 +127,7 @@ impl Extents {
         self.ends.get(wall as usize).is_some_and(|ends| *ends)
     }
 
-    /// The ends of the surface around a point of a wall, so far from the wall's start, on its left or its right.
+    /// The ends of the surface around a point of a wall, at this distance from the wall's start, on its left or right.
     pub(crate) fn around(&self, wall: u32, from_start_m: f64, on_left: bool) -> Ends {
         let wall = wall as usize;
         let first = self.stretches.partition_point(|stretch| stretch.wall < wall);
@@ -148,7 +148,7 @@ impl Extents {
 struct Arm {
     angle_rad: f64,
     piece: usize,
-    /// The end of the piece that is here.
+    /// The end of the piece at this vertex.
     end: usize,
 }
 

@@ -1,9 +1,9 @@
-//! Where to begin looking for the triangle under a point.
+//! Start triangles for locating a point.
 
 use super::NONE;
 use crate::geometry::Point;
 
-/// A coarse grid over the walls; each cell knows a triangle near it.
+/// A coarse grid over the walls; each cell stores a nearby triangle.
 #[derive(Debug, Default)]
 pub(super) struct Hints {
     corner: [f64; 2],

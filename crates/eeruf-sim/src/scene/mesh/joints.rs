@@ -1,5 +1,5 @@
-//! Where walls meet: ends that touch become one vertex of the mesh, a wall on which another ends is cut there, and
-//! walls that cross or overlap are refused.
+//! Joints of walls: ends that touch become one vertex of the mesh, a wall on which another ends is cut there, and walls
+//! that cross or overlap are refused.
 
 use super::Piece;
 use crate::geometry::{Point, TOUCH_M, cross};
@@ -98,10 +98,10 @@ fn root(same: &mut [usize], mut corner: usize) -> usize {
     corner
 }
 
-/// Meeting of two walls.
+/// The way in which two walls meet.
 #[derive(Default)]
 struct Meeting {
-    /// For each end of the first wall, the end of the second that it is joined to.
+    /// For each end of the first wall, the end of the second to which it is joined.
     joined: [Option<usize>; 2],
     /// Ends of the second wall that lie within the first.
     on_first: [bool; 2],
@@ -136,7 +136,7 @@ fn meet(a: &Wall, b: &Wall) -> Meeting {
     meeting
 }
 
-/// Returns true if a point lies on a wall, its ends aside.
+/// Returns true if a point lies on a wall but not at its ends.
 fn within(wall: &Wall, point: Point) -> bool {
     let (along, to) = (wall.to - wall.from, point - wall.from);
     let length = along.norm();

@@ -1,5 +1,5 @@
-//! The plane cut into triangles along the walls: a constrained Delaunay mesh, built once per scene.
-//! Stored as *gates*: a gate is one side of one triangle, seen by a beam that enters through it.
+//! The plane cut into triangles along the walls: a constrained Delaunay mesh, built once per scene. It is stored as
+//! *gates*: a gate is one side of one triangle, seen by a beam that enters through it.
 
 mod build;
 pub(super) mod edges;
@@ -10,24 +10,24 @@ pub(super) mod joints;
 use crate::geometry::{Point, SAME_DIRECTION, Vector, cross};
 use hints::Hints;
 
-/// Marks an exit that is a reflecting wall; the other bits are the gate by which the reflected beam comes back.
+/// Marker of an exit that is a reflecting wall; the other bits are the gate by which the reflected beam returns.
 const WALL: u32 = 1 << 31;
-/// An exit from which nothing returns: an opening, the back of a wall, the rim of the mesh.
+/// Marker of an exit from which nothing returns: an opening, the back of a wall, the rim of the mesh.
 const SWALLOW: u32 = u32::MAX;
-/// Not a wall, not a triangle.
+/// Marker of no wall and of no triangle.
 pub(crate) const NONE: u32 = u32::MAX;
 
 /// The triangle behind one side of a triangle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Exit(u32);
 
-/// [`Exit`], taken apart.
+/// The meaning of an [`Exit`].
 pub(crate) enum Beyond {
     /// The next triangle, entered by this gate.
     Gate(u32),
     /// A wall; the reflected beam enters by this gate.
     Wall(u32),
-    /// Nothing.
+    /// Nothing returns from here.
     Swallow,
 }
 
@@ -70,7 +70,7 @@ pub(crate) struct Piece {
     pub(crate) wall: usize,
 }
 
-/// The triangles and a grid of hints that finds the one under a point.
+/// The triangles, and a grid of hints for locating points.
 #[derive(Debug)]
 pub(crate) struct Mesh {
     pub(crate) gates: Vec<Gate>,
@@ -84,7 +84,7 @@ pub(crate) struct Mesh {
     /// Half the width of the square that the mesh covers, and its middle.
     half_m: f64,
     middle: Point,
-    /// Extent of the mesh beyond the walls.
+    /// Distance by which the mesh extends beyond the walls.
     pub(crate) reach_m: f64,
 }
 
@@ -114,8 +114,8 @@ impl Mesh {
         (point.x - self.middle.x).abs() < self.half_m && (point.y - self.middle.y).abs() < self.half_m
     }
 
-    /// Finds all triangles that contain a point: one, two when it lies on a side, a fan when it lies on a corner.
-    /// The point must be [covered](Self::covers).
+    /// Finds all triangles that contain a point: one, two if it lies on a side, a fan if it lies on a corner. The point
+    /// must be [covered](Self::covers).
     pub(crate) fn containing(&self, point: Point, found: &mut Vec<u32>) {
         found.clear();
         found.push(self.locate(point));
@@ -200,14 +200,14 @@ impl Mesh {
         self.covers(point) && self.solid[self.locate(point) as usize]
     }
 
-    /// Returns true if a point whose triangles are known, see [`containing`](Self::containing), is inside a solid and
-    /// not on its surface.
+    /// Returns true if a point, given with its triangles, is inside a solid and not on its surface; see
+    /// [`containing`](Self::containing).
     pub(crate) fn is_solid_at(&self, triangles: &[u32]) -> bool {
         triangles.iter().all(|&triangle| self.solid[triangle as usize])
     }
 
-    /// Visits the triangles that straight lines of some length from a point reach before they meet a wall, some more
-    /// than once; with the triangles that [contain](Self::containing) it.
+    /// Visits the triangles within a distance that are visible from a point, some more than once. The point is given
+    /// with the triangles that [contain](Self::containing) it.
     pub(crate) fn visit_seen(&self, from: Point, starts: &[u32], reach_m: f64, mut visit: impl FnMut(u32)) {
         // Cones between two corners of the scene, behind these sides.
         let mut open: Vec<(Exit, Vector, Vector)> = Vec::new();
@@ -237,8 +237,8 @@ impl Mesh {
         }
     }
 
-    /// Returns true if the straight segment between two points meets no wall; with the triangles that
-    /// [contain](Self::containing) each.
+    /// Returns true if no wall crosses the segment between two points, each given with the triangles that
+    /// [contain](Self::containing) it.
     pub(crate) fn sees(&self, from: Point, starts: &[u32], to: Point, goals: &[u32]) -> bool {
         if starts.iter().any(|triangle| goals.contains(triangle)) {
             return true;

@@ -1,4 +1,4 @@
-//! Robots' bodies as walls and poles: for each emitter and receiver the scene in which all bodies stand but their own
+//! Robots' bodies as walls and poles: for each emitter and receiver, the scene with all bodies except their own
 //! robots'.
 
 use crate::{
@@ -8,14 +8,14 @@ use crate::{
     world::World,
 };
 
-/// Where bodies come among a scene's walls and poles. Whoever is left out, each side and each disc keeps its number:
-/// those of the scene first, then the sides and the discs of all robots in order.
+/// Numbers of bodies among a scene's walls and poles. Each side and each disc keeps its number whichever bodies are
+/// left out: first those of the scene, then the sides and discs of all robots in order.
 #[derive(Clone)]
 pub(in crate::simulation) struct Bodies {
     /// For each robot, its first side and its disc.
     first: Vec<[u32; 2]>,
     any: bool,
-    /// The world's scene with these sides in it, of late: of robots that stand they are the same from firing to firing.
+    /// Recent scenes of the world with these sides; for robots that stand they are the same in every firing.
     sided: Vec<(Vec<Wall>, Scene)>,
 }
 
@@ -46,12 +46,12 @@ impl Bodies {
         Self { first, any, sided: Vec::new() }
     }
 
-    /// True if there are any.
+    /// Returns true if there are bodies.
     pub(in crate::simulation) fn any(&self) -> bool {
         self.any
     }
 
-    /// The world's scene with the bodies of all robots but these; none if nothing is to be added.
+    /// The world's scene with the bodies of all robots but these; `None` if there is nothing to add.
     pub(in crate::simulation) fn scene(
         &mut self,
         world: &World,
@@ -110,7 +110,7 @@ impl Bodies {
 }
 
 impl Furnished {
-    /// Gives bounces the numbers that they have in every scene of the world.
+    /// Renumbers bounces with their numbers in every scene of the world.
     pub(in crate::simulation) fn number(&self, bounces: &mut [Bounce]) {
         for bounce in bounces {
             let (own, numbers, index) = match bounce {

@@ -1,5 +1,4 @@
-//! Limits of hearing: how faint the sound of one kind of transducer may be, and how far it may come, to be heard by
-//! another.
+//! Limits of hearing between two kinds of transducers: the faintest sound and the longest path.
 
 use crate::{
     acoustics::{LOUDEST_PANEL, Transducer},
@@ -7,19 +6,19 @@ use crate::{
     world::{FARTHEST, World},
 };
 
-/// Sound that is farther below the threshold is not counted where arrivals add. A choice.
+/// Level below the threshold, in dB, at which sound is ignored where arrivals add. A choice.
 const HEARD_TOGETHER_DB: f64 = 10.0;
 
-/// Sound that a kind of transducer hears of a kind in this world.
+/// Limits of the sound that one kind of transducer hears from another in this world.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct HearingRange {
     sending: Transducer,
     hearing: Transducer,
     /// The amplitude that is just heard.
     pub(super) floor: f64,
-    /// The faintest level that is heard if the strongest fading lifts it, or others that come within a burst.
+    /// The faintest level that is heard if the strongest fading raises it, or other arrivals within a burst.
     pub(super) faintest: f64,
-    /// The longest path that is heard then, in metres.
+    /// The longest path that is then heard, in metres.
     pub(super) longest_m: f64,
 }
 
@@ -45,8 +44,8 @@ impl HearingRange {
     }
 }
 
-/// The longest path that sound could be heard after, in metres: a millimetre more than where it has fallen to `floor`
-/// without any loss but spreading and the air's.
+/// The longest path, in metres, on which sound could be heard: a millimetre more than where it falls to `floor` by
+/// spreading and the air alone.
 fn longest_audible_m(transducer: &Transducer, air: Air, floor: f64) -> f64 {
     let loss_db_per_m = air.absorption_db_per_m(transducer.frequency_hz);
     let (mut near, mut far) = (0.0, 1.0 / floor);

@@ -32,7 +32,7 @@ pub(crate) struct Channel {
     pub(crate) receiver: u32,
     /// The path's number, see [`Channels::paths`].
     pub(crate) path: u32,
-    /// The part that only its ends and its bounces decide.
+    /// The key that depends only on the path's ends and bounces.
     pub(crate) key: u64,
     /// Travelling time in nanoseconds.
     pub(crate) delay: u64,
@@ -43,38 +43,38 @@ pub(crate) struct Channel {
 }
 
 impl Channel {
-    /// Returns the sound, beginning at a time with a level, of which bursts are as long as this to its receiver.
+    /// Returns the sound of this channel from a time on, with a level, and with bursts of this length for its receiver.
     pub(crate) fn wave(&self, onset: u64, level_over_threshold_db: f32, burst: u64) -> Wave {
         let Self { receiver, path, turn, .. } = *self;
         Wave { receiver: receiver as usize, onset, burst, turn, path, level_over_threshold_db }
     }
 }
 
-/// Returns true if sound may matter that reaches a sensor at about a time, give or take a slack, in true nanoseconds.
+/// Returns true if sound may matter that reaches a sensor at about a time, plus or minus a slack, in true nanoseconds.
 pub(crate) type Arrives<'a> = &'a dyn Fn(usize, u64, u64) -> bool;
 
-/// Phase of what an edge sends back to the side that the sound came from, as a share of a turn: that of Keller's
-/// coefficient, `-exp(-j pi / 4)`.
+/// Phase of sound that an edge returns towards its source, as a share of a turn: that of Keller's coefficient, `-exp(-j
+/// pi / 4)`.
 const EDGE_TURN: f64 = 0.375;
 
 /// All channels of a world.
 #[derive(Clone)]
 pub(crate) struct Channels {
-    /// The present one; of those before only the scene differed.
+    /// The present world; earlier ones differed only in their scenes.
     world: Arc<World>,
-    /// For each sensor of the world, which one it is.
+    /// Identity of each sensor of the world.
     ids: Vec<SensorId>,
     /// The first sensor of each robot.
     first: Vec<usize>,
     tracer: Tracer,
     matrix: CrosstalkMatrix,
     moves: bool,
-    /// Hearing ranges, of each kind of transducer that hears one.
+    /// Hearing ranges for each pair of kinds of transducers that hear each other.
     ranges: Vec<HearingRange>,
     bodies: Bodies,
-    /// True if it matters what a robot hears.
+    /// For each robot, true if its hearing matters.
     listens: Vec<bool>,
-    /// The channels from each emitter while nothing moves, with one more start at the end; else those of the last
+    /// The channels from each emitter while nothing moves, with one more start at the end; otherwise those of the last
     /// firing.
     channels: Vec<Channel>,
     starts: Vec<usize>,
@@ -125,7 +125,7 @@ impl Channels {
         Ok(channels)
     }
 
-    /// Copies the channels, to be stopped apart from these.
+    /// Copies the channels, with a separate switch to stop them.
     pub(crate) fn copy(&self, stop: Stop) -> Self {
         let mut copy = self.clone();
         copy.tracer.stop = stop;
@@ -142,8 +142,8 @@ impl Channels {
         self.first[robot]
     }
 
-    /// Makes sure that the channels from this emitter are those at a time, in true nanoseconds. Where they are computed
-    /// now, those that do not matter are left out.
+    /// Updates the channels from this emitter to a time, in true nanoseconds. If they are computed now, those that do
+    /// not matter are left out.
     pub(crate) fn prepare(
         &mut self,
         emitter: usize,
@@ -159,7 +159,7 @@ impl Channels {
         if self.moves { &self.channels } else { &self.channels[self.starts[emitter]..self.starts[emitter + 1]] }
     }
 
-    /// The travelling time of what a prepared sensor reads alone: its own sound's first arrival that is loud enough; or
+    /// The travelling time of a prepared sensor's reading alone: its own sound's first arrival that is loud enough, or
     /// [`NEVER`].
     pub(crate) fn reference(&self, sensor: usize, hearing: &Hearing) -> u64 {
         let own = self.from(sensor).iter().filter(|channel| channel.receiver as usize == sensor);
@@ -192,18 +192,18 @@ impl Channels {
         self.paths.paths()
     }
 
-    /// Returns true if paths are looked for at each firing.
+    /// Returns true if paths are computed for each firing.
     pub(crate) fn moves(&self) -> bool {
         self.moves
     }
 
-    /// From now on something moves, though nothing did before.
+    /// Declares that something moves from now on.
     pub(crate) fn set_moving(&mut self) {
         self.moves = true;
     }
 
-    /// From now on sound travels in the scene of another world, whose sensors are the same. Paths keep their numbers.
-    /// If there are none to be found, everything stays as it is.
+    /// Changes to the scene of another world with the same sensors. Paths keep their numbers. If no paths can be found,
+    /// nothing changes.
     pub(crate) fn change_scene(&mut self, world: Arc<World>, kinematics: &impl Kinematics) -> Result<(), PathsError> {
         let before = core::mem::replace(&mut self.world, world);
         self.shared = None;
@@ -344,8 +344,8 @@ impl Channels {
         }
     }
 
-    /// Looks for the channels from emitters that are alike to all of these receivers that hear them. Paths that only
-    /// the strongest fading lifts over the detection floor are among them.
+    /// Finds the channels from a group of emitters to all of these receivers that hear them, including paths that only
+    /// the strongest fading lifts over the detection floor.
     fn trace(
         &mut self,
         emitters: &[usize],
@@ -494,7 +494,7 @@ impl Channels {
         }
     }
 
-    /// The channel of a path, whose bounces are in `self.bounces`.
+    /// The channel of a path whose bounces are in `self.bounces`.
     fn channel(&mut self, ends: [usize; 2], path: &CriticalPath, range: &HearingRange) -> Option<Channel> {
         let receiver = ends[1];
         let velocity = self.velocities[receiver];

@@ -1,4 +1,4 @@
-//! Numbers for paths, the same for the same walls and poles between the same sensors.
+//! Numbers of paths, equal for equal walls and poles between the same sensors.
 
 use core::hash::{BuildHasherDefault, Hasher};
 use std::collections::HashMap;
@@ -14,7 +14,7 @@ use crate::{
 #[derive(Clone, Default)]
 pub(super) struct PathNumbers {
     paths: Vec<HeardPath>,
-    /// For each, what only its ends and its bounces decide, whenever it was met.
+    /// For each path, the key that depends only on its ends and bounces.
     keys: Vec<u64>,
     numbers: HashMap<u64, u32, BuildHasherDefault<AsItIs>>,
 }
@@ -53,7 +53,7 @@ impl PathNumbers {
         number
     }
 
-    /// The part that only a path's ends and bounces decide: the same in every simulation, whatever was met before.
+    /// A key that depends only on a path's ends and bounces, and so is equal in every simulation.
     pub(super) fn key(&self, number: u32) -> u64 {
         self.keys[number as usize]
     }
@@ -80,7 +80,7 @@ fn key_of(ends: [SensorId; 2], bounces: &[Bounce]) -> u64 {
     all.bits()
 }
 
-/// A key is well mixed already.
+/// A hasher that keeps a key as it is, since keys are already well mixed.
 #[derive(Default)]
 struct AsItIs(u64);
 

@@ -16,28 +16,28 @@ const FADING: u64 = 4;
 /// Fading and jitter of sound on its way.
 #[derive(Clone)]
 pub(crate) struct Propagation {
-    /// For what each firing draws again.
+    /// Random numbers drawn again for each firing.
     random: Random,
-    /// For what is a process in time.
+    /// Random processes in time.
     fading: Random,
     normal: &'static Normal,
     fading_db: f32,
     jitter_ns: f32,
-    /// No arrival is heard earlier or later by more, in nanoseconds.
+    /// Greatest deviation of an arrival's time, in nanoseconds.
     slack: u64,
-    /// Sounds that add, where they do.
+    /// The sounds that add, if they do.
     sum: Option<Envelope>,
-    /// Length of the burst of each sensor in nanoseconds, where sounds add.
+    /// Length of each sensor's burst in nanoseconds, if sounds add.
     bursts: Vec<u64>,
-    /// From one knot of the fading to the next, in nanoseconds; 0 if each firing draws again.
+    /// Interval between knots of the fading, in nanoseconds; 0 if each firing draws again.
     knot_ns: u64,
 }
 
-/// The correlation of [`Propagation::faded`] is 1/e after this share of the time from knot to knot.
+/// Share of the time between knots after which the correlation of [`Propagation::faded`] is 1/e.
 const CORRELATED: f64 = 0.939;
 
 impl Propagation {
-    /// The noise of a world, from this seed.
+    /// Propagation with the noise of a world, from this seed.
     pub(crate) fn new(world: &World, seed: Random) -> Self {
         let (noise, physics) = (world.noise(), world.physics());
         let jitter_ns = (noise.jitter_us_rms * 1000.0) as f32;
@@ -63,19 +63,18 @@ impl Propagation {
         }
     }
 
-    /// Returns true if chance depends on paths by their keys, and not on when each was met.
+    /// Returns true if randomness depends on the paths' keys, and not on when they were met.
     pub(crate) fn is_keyed(&self) -> bool {
         self.knot_ns > 0
     }
 
-    /// The slack of an arrival whose time is known to another slack, in nanoseconds.
+    /// The slack of an arrival whose time is itself known only to a slack, in nanoseconds.
     pub(crate) fn slack(&self, more: u64) -> u64 {
         self.slack.saturating_add(more)
     }
 
-    /// Sends out the sound of a firing at `now`; `emitter` and the number of its `firing` say which. Each arrival that
-    /// may matter to its receiver is handed to `arrive` with the receiver's number; receivers that are not there are
-    /// left out.
+    /// Sends out the sound of a firing at `now`; `emitter` and the number of its `firing` identify it. Each arrival
+    /// that may matter to its receiver is passed to `arrive` with the receiver's number; absent receivers are skipped.
     #[inline]
     pub(crate) fn send(
         &mut self,
@@ -114,13 +113,13 @@ impl Propagation {
         }
     }
 
-    /// Fading and shift of a path with this key at a time, both normally distributed: decided by the seed, the path and
-    /// the time alone, so that it does not matter who asks, nor what was asked before.
+    /// Fading and shift of a path with this key at a time, both normally distributed: a function of the seed, the path
+    /// and the time alone, so that the order of calls does not matter.
     ///
     /// Between independent normal numbers at knots, each path's at places of its own, it goes along a quarter of a
     /// circle, which keeps the variance: at the share `u` of the way `cos(u pi / 2) a + sin(u pi / 2) b`. At a distance
     /// of `s` knots, up to one, its correlation is `(1 - s / 2) cos(s pi / 2) + sin(s pi / 2) / pi`; beyond two it is
-    /// none.
+    /// 0.
     fn faded(&self, key: u64, now: u64) -> [f32; 2] {
         let path = self.fading.of(key);
         let since = now + path.of(0).bits() % self.knot_ns;
@@ -150,7 +149,7 @@ impl Bursts {
         bursts
     }
 
-    /// Goes on to the next burst.
+    /// Advances to the next burst.
     pub(crate) fn advance(&mut self) {
         let rate = self.noise.bursts_per_s;
         self.next = if rate > 0.0 {
@@ -163,7 +162,7 @@ impl Bursts {
         };
     }
 
-    /// Arrival of a burst at `now` at one receiver, if it is loud enough there.
+    /// Arrival of a burst at `now` at one receiver; `None` if it is too faint there.
     pub(crate) fn arrival(&mut self, now: u64) -> Option<Arrival> {
         let [fades, _] = self.normal.pair(self.random.bits());
         let level_over_threshold_db = self.noise.burst_db as f32 + self.noise.fading_db_rms as f32 * fades;

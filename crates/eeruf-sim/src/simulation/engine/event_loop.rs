@@ -1,8 +1,8 @@
 //! The event simulation: rings fire, sound travels, sensors hear, in the order of true time.
 //!
 //! Only two things can happen next to a robot: its ring is due, or one of its sensors hears something. So the event
-//! queue is two moments for each robot, the earlier one first and an echo before the ring on a tie. What is on its way
-//! is kept with the sensor that it will reach ([`Receiver`]).
+//! queue is two moments for each robot, the earlier one first and an echo before the ring on a tie. Sound in flight is
+//! stored with the sensor that it will reach ([`Receiver`]).
 
 use std::sync::Arc;
 
@@ -28,12 +28,12 @@ use crate::{
     world::{AnySchedule, Random, Robot, World},
 };
 
-/// Number of events that go by between two calls of `keep_going`.
+/// Number of events between two calls of `keep_going`.
 const EVENTS_PER_CALL: u32 = 8192;
-/// A control loop tells its ring so often how the robot moves.
+/// Interval at which a control loop tells its ring how the robot moves.
 const CONTROL_CYCLE_NS: u64 = 20_000_000;
 
-/// A world under way.
+/// A running world.
 pub(crate) struct EventLoop<K> {
     /// The speed of sound, in m/s.
     c: f64,
@@ -43,9 +43,9 @@ pub(crate) struct EventLoop<K> {
     bursts: Bursts,
     /// Receivers of every sensor of the world.
     receivers: Vec<Receiver>,
-    /// Reading of each sensor alone, at its last firing.
+    /// Travelling time of each sensor's reading alone, at its last firing.
     references: Vec<u64>,
-    /// Motion of each sensor's robot then, and at the firing before.
+    /// Motion of each sensor's robot at its last firing, and at the firing before.
     fired: Vec<Option<Moment>>,
     fired_before: Vec<Option<Moment>>,
     propagation: Propagation,
@@ -55,13 +55,13 @@ pub(crate) struct EventLoop<K> {
     /// The method by which each robot fires, and its own table.
     own_tables: Vec<(Method, Option<AnySchedule>)>,
     recorder: Recorder,
-    /// Nothing that happens later is reported.
+    /// The last moment whose events are reported.
     last: u64,
     stop: Stop,
     until_call: u32,
 }
 
-/// Runs a world under a method until the time is over or the robots' kinematics say so.
+/// Runs a world under a method until the time is over or the robots' kinematics end it.
 pub(crate) fn run(
     world: &World,
     method: Method,
@@ -87,8 +87,8 @@ pub(crate) fn end_of(world: &World, periods: u32) -> u64 {
 }
 
 impl<K: Kinematics> EventLoop<K> {
-    /// Before the first event. Firings from `end` on are not reported; without it there is no end. There is room for
-    /// this many readings.
+    /// The state before the first event. Firings from `end`, if given, are not reported. There is room for this many
+    /// readings.
     #[expect(clippy::too_many_arguments, reason = "each of them once, in two places")]
     pub(crate) fn new(
         world: &Arc<World>,
@@ -129,8 +129,8 @@ impl<K: Kinematics> EventLoop<K> {
         })
     }
 
-    /// Copies the state, to go on apart from this and to be stopped by another switch; none if a firing or a filter of
-    /// the caller's cannot be copied.
+    /// Copies the state, with a separate switch to stop it; `None` if a firing method or filter of the caller's cannot
+    /// be copied.
     pub(crate) fn copy(&self, stop: Stop) -> Option<Self>
     where
         K: Clone,
@@ -156,8 +156,8 @@ impl<K: Kinematics> EventLoop<K> {
         })
     }
 
-    /// Goes on until a time, in true nanoseconds; what happens then waits for the next call. `keep_going` is called now
-    /// and then with the share of all time that has passed. Returns whether there is more to come.
+    /// Runs until a time, in true nanoseconds; events at that time wait for the next call. `keep_going` is sometimes
+    /// called with the passed share of the whole time. Returns true if more events follow.
     pub(crate) fn run_until(
         &mut self,
         until: u64,
@@ -169,8 +169,8 @@ impl<K: Kinematics> EventLoop<K> {
         Ok(more?.0)
     }
 
-    /// Runs no farther than to the first event that gives readings: returns whether there is more to come, and when
-    /// that event was, if there was one.
+    /// Runs at most to the first event that yields readings. Returns true if more events follow, and the time of that
+    /// event, if there was one.
     pub(crate) fn run_to_reading(
         &mut self,
         until: u64,
@@ -226,7 +226,7 @@ impl<K: Kinematics> EventLoop<K> {
         }
     }
 
-    /// Changes by faults now: tables, and the objects in the scene.
+    /// Applies the changes by faults that are due: tables, and the objects in the scene.
     fn change(&mut self, rings: &mut [RunningRing]) -> Result<(), SimulationError> {
         let now = self.faults.next();
         let at_s = now as f64 * 1e-9;
@@ -250,12 +250,12 @@ impl<K: Kinematics> EventLoop<K> {
         Ok(())
     }
 
-    /// Readings since they were last taken, over this many seconds.
+    /// Takes the readings since the last call, with a duration of this many seconds.
     pub(crate) fn take(&mut self, duration_s: f64) -> Readings {
         self.recorder.take(self.channels.paths(), duration_s)
     }
 
-    /// From now on the scene is that of another world, whose robots are the same.
+    /// Changes to the scene of another world with the same robots.
     pub(crate) fn change_scene(&mut self, world: Arc<World>, now: u64) -> Result<(), SimulationError> {
         let c = world.scene().air().speed_of_sound();
         let at_s = now as f64 * 1e-9;
@@ -276,18 +276,18 @@ impl<K: Kinematics> EventLoop<K> {
         self.rings.get_mut(robot).map_or(Err(ChangeError::Fixed), |ring| ring.ring.change_schedule(schedule))
     }
 
-    /// Returns the motion of the robots.
+    /// Returns the robots' motions.
     pub(crate) fn kinematics(&self) -> &K {
         &self.kinematics
     }
 
-    /// Returns the robots to steer; something may move from now on.
+    /// Returns the robots for steering; from now on something may move.
     pub(crate) fn steer(&mut self) -> &mut K {
         self.channels.set_moving();
         &mut self.kinematics
     }
 
-    /// One robot's next event: an echo, if one of its sensors hears something now, and whatever its ring then wants.
+    /// Processes one robot's next event: an echo, if one of its sensors hears something now, and the ring's response.
     fn step(&mut self, rings: &mut [RunningRing], index: usize, now: u64) -> Result<(), SimulationError> {
         let own = |what: &'static str| {
             move |error: OwnError| SimulationError::Own { robot: index, what, at_s: now as f64 * 1e-9, error }
@@ -355,7 +355,7 @@ impl<K: Kinematics> EventLoop<K> {
         Ok(())
     }
 
-    /// Hands the ring what its sensors hear now.
+    /// Passes the sounds that its sensors hear now to the ring.
     fn hear(&mut self, ring: &mut RunningRing, now: u64, ticks: u64, instant: Instant) {
         ring.hears = NEVER;
         for (sensor, number) in ring.sensors.clone().enumerate() {
@@ -393,8 +393,8 @@ impl<K: Kinematics> EventLoop<K> {
         }
     }
 
-    /// A sensor is triggered: it, or the one whose trigger wire it has, begins to listen, and its sound sets out to
-    /// every sensor that can hear it.
+    /// Triggers a sensor: it, or the sensor at whose trigger wire it is, begins to listen and sends its sound to every
+    /// sensor that can hear it.
     fn fire(&mut self, rings: &mut [RunningRing], index: usize, triggered: usize, now: u64) -> Result<(), PathsError> {
         self.triggered[triggered] = now;
         self.receivers[triggered].forget();
@@ -411,7 +411,7 @@ impl<K: Kinematics> EventLoop<K> {
         Ok(())
     }
 
-    /// Looks for what a sensor that is triggered would hear alone, and for the paths from the one that sends.
+    /// Finds the reading that a triggered sensor would have alone, and the paths from the sensor that sends.
     fn prepare(&mut self, triggered: usize, emitter: usize, ring: &RunningRing, now: u64) -> Result<(), PathsError> {
         if self.channels.moves() {
             // Paths are searched for again, which takes as long as many events.
@@ -436,7 +436,7 @@ impl<K: Kinematics> EventLoop<K> {
         Ok(())
     }
 
-    /// A sensor that was prepared begins to listen and sends its sound.
+    /// Starts listening with a prepared sensor, and sends its sound.
     fn send(&mut self, rings: &mut [RunningRing], index: usize, emitter: usize, now: u64) {
         let hearing = *rings[index].hearing_of(emitter);
         let receiver = &mut self.receivers[emitter];
@@ -457,7 +457,7 @@ impl<K: Kinematics> EventLoop<K> {
         });
     }
 
-    /// A burst from outside, heard by all at once.
+    /// Lets a burst from outside reach all sensors at once.
     fn burst(&mut self, rings: &mut [RunningRing]) {
         let bursts = &mut self.bursts;
         let now = bursts.next;

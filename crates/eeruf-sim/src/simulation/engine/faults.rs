@@ -1,4 +1,4 @@
-//! The faults of a world while it is simulated: which of them are there, and what they do to a firing and to an echo.
+//! The active faults of a world under simulation, and their effects on firings and echoes.
 
 use std::sync::Arc;
 
@@ -15,10 +15,10 @@ const FAULTS: u64 = 5;
 const FRAME_NS: u64 = 50_000_000;
 /// Level of noise above what is just heard, in dB: a choice, as loud as a burst from outside.
 const NOISE_DB: f32 = 20.0;
-/// The level of a glitch, which is no sound and rises at once.
+/// Level of a glitch, which is not sound and rises at once.
 const GLITCH_DB: f32 = 200.0;
 
-/// The fate of a trigger.
+/// The result of a trigger.
 pub(super) enum Fired {
     /// No sound is sent, and nothing is heard.
     Nothing,
@@ -39,10 +39,9 @@ pub(super) enum Due {
 pub(super) struct Faults {
     world: Arc<World>,
     random: Random,
-    /// The world without what faults put into its scene.
+    /// The world without the objects of its faults.
     base: Arc<World>,
-    /// Time when the next of these changes is due: the beginnings and ends of other tables, and the places of what
-    /// moves.
+    /// Time of the next change: the beginning or end of another table, or a move of an object.
     next: u64,
     scene_next: u64,
 }
@@ -62,17 +61,17 @@ impl Faults {
         begun
     }
 
-    /// Returns true if there are any.
+    /// Returns true if there are faults.
     pub(super) fn any(&self) -> bool {
         !self.world.faults().is_empty()
     }
 
-    /// Returns the time when something changes next.
+    /// Returns the time of the next change.
     pub(super) fn next(&self) -> u64 {
         self.next
     }
 
-    /// Takes another world for the one without what faults put into its scene, which it gives as it is at a time.
+    /// Replaces the world without the objects of faults; returns it with those at a time.
     pub(super) fn begin_anew(&mut self, base: Arc<World>, now: u64) -> Result<Arc<World>, WorldError> {
         self.base = base;
         if self.scene_next == NEVER && !self.world.faults().iter().any(|fault| fault.kind.is_of_scene()) {
@@ -93,7 +92,7 @@ impl Faults {
         times.filter(|&at| now.is_none_or(|now| at > now)).min().unwrap_or(NEVER)
     }
 
-    /// The event due at a time, the one of [`next`](Self::next).
+    /// The change due at a time, that of [`next`](Self::next).
     pub(super) fn due(&mut self, now: u64) -> Result<Vec<Due>, WorldError> {
         let mut due = vec![];
         let time_s = now as f64 * 1e-9;
@@ -135,13 +134,13 @@ impl Faults {
             .map(|(index, fault)| (index as u64, fault))
     }
 
-    /// A random number from 0 to 1 that a fault, a sensor and its firing decide.
+    /// A random number from 0 to 1 that depends on a fault, a sensor and its firing.
     fn chance(&self, fault: u64, id: SensorId, firing: u32, what: u64) -> f64 {
         let of_sensor = self.random.of(fault).of(id.robot.into()).of(id.sensor.into());
         of_sensor.of(firing.into()).of(what).bits() as f64 / (u64::MAX as f64 + 1.0)
     }
 
-    /// The fate of a sensor's trigger.
+    /// The result of a sensor's trigger.
     pub(super) fn fired(&self, id: SensorId, now: u64) -> Fired {
         let wires = self.of(id, now).filter(|(_, fault)| fault.kind == FaultKind::TriggerWires);
         let sensor = wires.fold(id.sensor, |sensor, (_, fault)| fault.exchanged(sensor));
@@ -156,7 +155,7 @@ impl Faults {
         if sends { Fired::Sends(sensor, late) } else { Fired::Nothing }
     }
 
-    /// Sounds of a sensor after a firing because of faults, beside sound.
+    /// Additional sounds of a sensor after a firing, caused by faults.
     pub(super) fn heard_beside(&self, id: SensorId, now: u64, firing: u32, hearing: &Hearing) -> Vec<Arrival> {
         let mut heard = vec![];
         let robot = self.world.robots().get(usize::from(id.robot));
@@ -185,7 +184,7 @@ impl Faults {
         heard
     }
 
-    /// The sensor whose line says what this one hears; none if nothing says it.
+    /// The sensor on whose line this sensor's echoes appear; `None` if on no line.
     pub(super) fn reported(&self, id: SensorId, now: u64, firing: u32) -> Option<u8> {
         for (index, fault) in self.of(id, now) {
             let silent = match fault.kind {

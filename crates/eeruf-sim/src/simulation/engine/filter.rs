@@ -1,12 +1,11 @@
-//! [`Filter`]: what the caller's own code believes of a reading.
+//! [`Filter`]: the caller's own judgement of readings.
 
 use eeruf_core::{Reading, ReadingKind};
 
 use crate::methods::OwnError;
 use crate::simulation::receiver::Echo;
 
-/// Belief in the readings of one robot's ring, in place of what the method's judge says. Hand it to a simulation with
-/// [`Own`](crate::Own).
+/// A judge of one robot's readings that replaces the method's. Give it to a simulation with [`Own`](crate::Own).
 ///
 /// ```
 /// use std::collections::HashMap;
@@ -25,13 +24,13 @@ use crate::simulation::receiver::Echo;
 /// }
 /// ```
 pub trait Filter: Send {
-    /// Takes in what one firing of one sensor has heard. Firings of a sensor come in order, each once.
+    /// Judges one firing of one sensor. Firings of a sensor come in order, each once.
     ///
     /// # Errors
-    /// Whatever ends the simulation, with [`SimulationError::Own`](crate::SimulationError::Own).
+    /// An error ends the simulation, with [`SimulationError::Own`](crate::SimulationError::Own).
     fn push(&mut self, firing: &FiredReading<'_>) -> Result<Filtered, OwnError>;
 
-    /// Returns one that goes on as this does; none, as by default, if it cannot be copied.
+    /// Returns a copy that continues in the same way; `None`, the default, if it cannot be copied.
     fn copy(&self) -> Option<Box<dyn Filter>> {
         None
     }
@@ -47,36 +46,35 @@ impl<F: Filter + ?Sized> Filter for Box<F> {
     }
 }
 
-/// Echoes that one firing of one sensor has heard.
+/// The echoes of one firing of one sensor.
 #[derive(Clone, Copy, Debug)]
 pub struct FiredReading<'a> {
-    /// The ring's own verdict, by the filter of core or the belief of a flow ring: its sensor, phase and period too.
+    /// The ring's own verdict, by the method's judge, with sensor, phase and period.
     pub reading: &'a Reading,
     /// The echoes, earliest first: one at most, but up to eight under methods of several, such as
     /// [`Method::MultiEcho`](crate::Method::MultiEcho).
     pub echoes: &'a [Echo],
     /// Time when it fired, in seconds of true time.
     pub fired_s: f64,
-    /// Change of a good reading since the sensor's firing before that odometry expects, in microseconds; 0 for a robot
-    /// without odometry.
+    /// Change that odometry expects of a good reading since the sensor's previous firing, in microseconds; 0 for a
+    /// robot without odometry.
     pub expected_change_us: i32,
 }
 
-/// Belief in a firing.
+/// The judgement of a firing.
 #[derive(Clone, Copy, Debug)]
 pub struct Filtered {
     /// The verdict. [`Accepted`](ReadingKind::Accepted) and [`Clear`](ReadingKind::Clear) count as believed.
     pub kind: ReadingKind,
-    /// The echo that it stands for: one of this firing, or of an earlier one that the filter has kept; none for
-    /// silence.
+    /// The echo of the reading: one of this firing, or of an earlier one that the filter has kept; `None` for silence.
     pub echo: Option<Echo>,
 }
 
 impl Filtered {
-    /// Silence, believed: nothing is in range.
+    /// A believed silence: nothing is in range.
     pub const SILENT: Self = Self { kind: ReadingKind::Clear, echo: None };
 
-    /// An echo or silence, believed.
+    /// A believed echo, or silence.
     pub const fn accepted(echo: Option<Echo>) -> Self {
         Self { kind: if echo.is_some() { ReadingKind::Accepted } else { ReadingKind::Clear }, echo }
     }

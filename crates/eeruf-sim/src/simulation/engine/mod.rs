@@ -1,5 +1,5 @@
-//! The event loop: which ring acts next, which sound arrives next, and what is written down. It uses channels,
-//! receivers and kinematics, and knows nothing of who calls it.
+//! The event loop: which ring acts next, which sound arrives next, and which readings are recorded. It uses channels,
+//! receivers and kinematics.
 
 mod arrivals;
 mod event_loop;

@@ -1,4 +1,4 @@
-//! [`Own`]: what a simulation takes from its caller instead of from a method.
+//! [`Own`]: parts of a simulation that the caller replaces.
 
 use core::fmt;
 use std::collections::BTreeMap;
@@ -7,7 +7,7 @@ use super::filter::Filter;
 use crate::methods::FiringMethod;
 use crate::simulation::error::SimulationError;
 
-/// The caller's own firings and filters, each for one robot. Whatever is not here goes by the method.
+/// The caller's own firing methods and filters, each for one robot. The method provides the rest.
 ///
 /// ```
 /// use std::sync::Arc;
@@ -39,37 +39,37 @@ pub struct Own {
 }
 
 impl Own {
-    /// Nothing: all robots go by the method.
+    /// An empty set: all robots follow the method.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// A robot, counted from 0, fires by this.
+    /// Sets the firing method of a robot, counted from 0.
     #[must_use]
     pub fn firing(mut self, robot: usize, firing: impl FiringMethod + 'static) -> Self {
         self.firing.insert(robot, Box::new(firing));
         self
     }
 
-    /// Sets the filter that says which readings of a robot, counted from 0, are believed.
+    /// Sets the filter that decides which readings of a robot, counted from 0, are believed.
     #[must_use]
     pub fn filter(mut self, robot: usize, filter: impl Filter + 'static) -> Self {
         self.filter.insert(robot, Box::new(filter));
         self
     }
 
-    /// True if all of it is for robots that there are.
+    /// Returns true if all parts are for existing robots.
     pub(in crate::simulation) fn check(&self, robots: usize) -> Result<(), SimulationError> {
         let last = self.firing.keys().chain(self.filter.keys()).max().copied();
         last.filter(|&robot| robot >= robots).map_or(Ok(()), |robot| Err(SimulationError::Robot { robot, robots }))
     }
 
-    /// Returns true if a robot fires by it.
+    /// Returns true if a robot has its own firing method.
     pub(super) fn fires(&self, robot: usize) -> bool {
         self.firing.contains_key(&robot)
     }
 
-    /// Returns true if its readings are filtered by it.
+    /// Returns true if a robot has its own filter.
     pub(super) fn filters(&self, robot: usize) -> bool {
         self.filter.contains_key(&robot)
     }

@@ -1,5 +1,4 @@
-//! The way of a reading under a method, and its entry in the record: what it says, what it came from, and what the
-//! sensor would have read alone.
+//! Recording of readings under a method: echo, cause, and the reading that the sensor would have had alone.
 
 use std::collections::VecDeque;
 
@@ -15,10 +14,10 @@ use crate::{
     results::{Cause, HeardPath, NO_PATH, Readings, SensorId},
 };
 
-/// More than all rings of a world give at one moment.
+/// More readings than all rings of a world emit at one moment.
 const ROOM: usize = 1 << 13;
 
-/// Writes down the readings.
+/// Recorder of the readings.
 pub(crate) struct Recorder {
     readings: Readings,
     /// The caller's own filter of each robot's readings, if any.
@@ -30,7 +29,7 @@ pub(crate) struct Recorder {
 }
 
 impl Recorder {
-    /// For readings of firings before `end`, in true nanoseconds, of which about as many are expected.
+    /// A recorder for firings before `end`, in true nanoseconds, with about this many readings.
     pub(crate) fn new(
         method: Method,
         end: u64,
@@ -48,7 +47,7 @@ impl Recorder {
         Ok(Self { readings, filters, earlier: vec![VecDeque::new(); ids.len()], ids: ids.to_vec(), end })
     }
 
-    /// A record in the same state, unless a filter of the caller's cannot be copied.
+    /// A recorder in the same state; `None` if a filter of the caller's cannot be copied.
     pub(crate) fn copy(&self) -> Option<Self> {
         let copy_of = |filter: &Option<Box<dyn Filter>>| match filter {
             None => Some(None),
@@ -59,12 +58,12 @@ impl Recorder {
         Some(Self { readings: readings.clone(), filters, earlier: earlier.clone(), ids: ids.clone(), end: *end })
     }
 
-    /// Returns true if nothing was read since the record was last taken.
+    /// Returns true if no reading was recorded since the last `take`.
     pub(crate) fn is_empty(&self) -> bool {
         self.readings.is_empty()
     }
 
-    /// Makes sure that a few thousand more fit.
+    /// Reserves room for a few thousand more.
     pub(crate) fn make_room(&mut self) -> Result<(), SimulationError> {
         if self.readings.room() >= ROOM {
             return Ok(());
@@ -74,10 +73,9 @@ impl Recorder {
         self.readings.try_reserve(more).map_err(|_| SimulationError::Memory { readings: (readings + more) as u64 })
     }
 
-    /// Records what is believed of a firing, whose echo may be that of a firing before: `stands_for` says how many. The
-    /// instant of the trigger comes with it; `reference` is the travelling time of what the sensor hears alone,
-    /// `fired_from` its place and heading then. The answer is all readings with this one as the last; none if it does
-    /// not count.
+    /// Records the judgement of a firing; its echo may be that of an earlier firing, `stands_for` firings before.
+    /// `reference` is the travelling time of the sensor's reading alone, `fired_from` its place and heading at the
+    /// trigger. Returns all readings, this one last; `None` if it does not count.
     pub(crate) fn record(
         &mut self,
         sensor: usize,
@@ -137,7 +135,7 @@ impl Recorder {
         Ok(Some(out))
     }
 
-    /// The record since it was last taken, of this duration, with only the paths that some reading came along.
+    /// Takes the record since the last call, with this duration and only the paths of its readings.
     pub(crate) fn take(&mut self, paths: &[HeardPath], duration_s: f64) -> Readings {
         let mut readings = self.readings.take();
         readings.duration_s = duration_s;

@@ -1,4 +1,4 @@
-//! One robot's ring under way: core's ring, the robot's clock, and when something happens to it next.
+//! One robot's running ring: core's ring, the robot's clock, and the times of its next events.
 
 use std::sync::Arc;
 
@@ -19,33 +19,33 @@ use crate::{
 /// Purpose of the stream of random numbers.
 const DITHER: u64 = 3;
 
-/// A ring under way.
+/// A running ring.
 pub(crate) struct RunningRing {
     pub(crate) world: Arc<World>,
-    /// The number of the robot that has it.
+    /// The number of its robot.
     pub(crate) robot: usize,
     pub(crate) ring: Box<dyn RingRunner>,
     pub(crate) clock: Ticker,
     /// Hearing of each sensor.
     hearings: Vec<Hearing>,
-    /// The sensors among all of the world's.
+    /// The first number of its sensors among all of the world's.
     pub(crate) sensors: core::ops::Range<usize>,
     /// Time when its ring is due.
     pub(crate) wakes: u64,
-    /// Time when one of its sensors hears something.
+    /// Time when one of its sensors next hears something.
     pub(crate) hears: u64,
-    /// Time when its control loop next tells it how it moves.
+    /// Time when its control loop next reports the robot's motion.
     pub(crate) tells: u64,
 }
 
 impl RunningRing {
-    /// A ring in the same state, unless it fires by what cannot be copied.
+    /// A ring in the same state; `None` if its firing method cannot be copied.
     pub(crate) fn copy(&self) -> Option<Self> {
         let (world, hearings, sensors) = (Arc::clone(&self.world), self.hearings.clone(), self.sensors.clone());
         Some(Self { world, ring: self.ring.copy()?, hearings, sensors, ..*self })
     }
 
-    /// Hearing of a sensor, one of all of the world's.
+    /// Hearing of a sensor, given by its number in the world.
     pub(crate) fn hearing_of(&self, number: usize) -> &Hearing {
         // One for each of its sensors.
         &self.hearings[number - self.sensors.start]
@@ -57,14 +57,14 @@ impl RunningRing {
     }
 }
 
-/// A robot's method and judge, and the plan of its ring; none for one that fires by the caller's own code.
+/// A robot's method, judge and plan; no plan if the caller's own code fires.
 pub(crate) struct Plan {
     pub(crate) method: Method,
     judging: Judging,
     pub(crate) firing: Option<FiringPlan>,
 }
 
-/// The plan of each robot, but for those that fire by the caller's `own`.
+/// The plan of each robot, except those that fire by the caller's `own`.
 pub(crate) fn plans(
     world: &World,
     method: Method,
@@ -101,7 +101,7 @@ pub(crate) fn plans(
     robots.iter().enumerate().map(plan).collect()
 }
 
-/// Starts every robot's ring as planned; nobody gives it another schedule if it `keeps_schedules`.
+/// Starts every robot's ring as planned; with `keeps_schedules` no schedule will change.
 pub(crate) fn start_all(
     world: &Arc<World>,
     plans: &[Plan],
@@ -171,8 +171,8 @@ pub(crate) fn start_all(
     Ok(rings)
 }
 
-/// Expected change of a good reading of a sensor since its firing before: `-2 d / c`, with `d` the way that the robot
-/// carried it forward in between, as odometry knows it. Nothing without odometry.
+/// Expected change of a sensor's good reading since its previous firing: `-2 d / c`, where `d` is the distance by which
+/// the robot carried it forward, by odometry; 0 without odometry.
 pub(crate) fn expected_change_us(robot: &Robot, sensor: u8, before: &Pose, fired: &Pose, speed_of_sound: f64) -> i32 {
     let Some(pose) = robot.sensors.get(usize::from(sensor)).filter(|_| robot.odometry) else { return 0 };
     let (before, fired) = (before * pose, fired * pose);

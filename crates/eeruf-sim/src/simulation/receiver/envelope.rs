@@ -7,7 +7,7 @@
 //!
 //! with the onsets `t_i`, a burst of length `T`, and phases `phi_i` of the carrier by the paths' travelling times. The
 //! envelope `r` of one sound rises evenly over the burst, as in [`Hearing::lateness`](super::Hearing::lateness), and
-//! falls in the same way: a burst that goes through a receiver whose response is as long. Between the moments where a
+//! falls in the same way: a burst through a receiver with a response of the same length. Between the moments where a
 //! sound begins, stops rising or ends, the phasor is linear and its square a parabola that opens upwards, so each such
 //! stretch crosses a threshold upwards at most once.
 
@@ -15,7 +15,7 @@ use core::f64::consts::TAU;
 
 use super::Arrival;
 
-/// A sound on its own.
+/// A single sound.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Wave {
     /// The number of its receiver.
@@ -27,7 +27,7 @@ pub(crate) struct Wave {
     /// The phase as a share of a turn.
     pub(crate) turn: f32,
     pub(crate) path: u32,
-    /// Level above the detection floor, the receiver's gain left out.
+    /// Level above the detection floor, without the receiver's gain.
     pub(crate) level_over_threshold_db: f32,
 }
 
@@ -36,10 +36,10 @@ pub(crate) struct Wave {
 pub(crate) struct Rise {
     /// Nanoseconds from the onset of the first sound of the sum until it begins.
     pub(crate) after: u32,
-    /// The squares of the envelope where it begins and ends. The next stretch begins with the same number, so that no
-    /// threshold lies between two stretches.
+    /// The squares of the envelope where it begins and ends. The next stretch begins with the last number, so that no
+    /// threshold falls between two stretches.
     pub(crate) squares: [f32; 2],
-    /// Nanoseconds that it lasts.
+    /// Duration in nanoseconds.
     lasts: f32,
     /// The parabola's first two derivatives at the beginning, halved, with time in stretches.
     linear: f32,
@@ -62,7 +62,7 @@ impl Rise {
     }
 }
 
-/// The sounds of one firing; holds the buffers.
+/// The sounds of one firing, with buffers.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Envelope {
     waves: Vec<Wave>,
@@ -76,8 +76,8 @@ impl Envelope {
         self.waves.push(wave);
     }
 
-    /// Hands out each stretch in which the sum of what was pushed rises over the threshold at full gain, with its
-    /// receiver, and forgets the sounds, which were sent at this time.
+    /// Yields each stretch in which the sum of the pushed sounds, sent at this time, rises over the threshold at full
+    /// gain, with its receiver; then forgets them.
     pub(crate) fn rises(&mut self, sent: u64, mut heard: impl FnMut(usize, Arrival)) {
         let mut waves = core::mem::take(&mut self.waves);
         waves.sort_unstable_by_key(|wave| (wave.receiver, wave.onset, wave.path));
@@ -136,7 +136,7 @@ impl Envelope {
     }
 }
 
-/// The phasor of a sum at a time, and which of the sounds that have begun and not ended has the most amplitude.
+/// The phasor of a sum at a time, and the loudest of the sounds that have begun and not ended.
 fn phasor(waves: &[Wave], now: u64, rise: u64) -> ([f64; 2], usize) {
     let (mut sum, mut most, mut loudest) = ([0.0; 2], f32::NEG_INFINITY, 0);
     for (place, wave) in waves.iter().enumerate().take_while(|(_, wave)| wave.onset <= now) {

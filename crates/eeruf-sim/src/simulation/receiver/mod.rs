@@ -1,4 +1,4 @@
-//! One sensor's receiver: what is on its way to it, what it hears while it listens, and what that came from.
+//! One sensor's receiver: the sound in flight to it, the sound that it hears, and the causes.
 //!
 //! It hears the first arrival above the detection floor between blanking and the end of the window; one that reports
 //! several echoes goes on listening after a dead time of one burst. Arrivals that may still matter to a later firing
@@ -19,34 +19,34 @@ pub(crate) use envelope::{Envelope, Rise, Wave};
 
 /// No moment of any simulation.
 pub(crate) const NEVER: u64 = u64::MAX;
-/// Stands for a burst from outside in [`Arrival::path`].
+/// Marker of a burst from outside in [`Arrival::path`].
 pub(crate) const EXTERNAL: u32 = u32::MAX - 1;
 
 /// Sound that reaches a sensor. Times are true nanoseconds.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Arrival {
-    /// Start; of a sum when the first of its sounds does.
+    /// Start; for a sum, the start of its first sound.
     pub(crate) onset: u64,
-    /// Time when it is heard: at its onset, or as much later as its receiver takes.
+    /// Time when it is heard: at its onset, or later if its receiver needs time.
     pub(crate) at: u64,
     /// Time when it was sent.
     pub(crate) sent: u64,
-    /// Along which path, or [`EXTERNAL`].
+    /// Path of the sound, or [`EXTERNAL`].
     pub(crate) path: u32,
-    /// Level above the detection floor, fading included, the receiver's gain left out.
+    /// Level above the detection floor, fading included, without the receiver's gain.
     pub(crate) level_over_threshold_db: f32,
-    /// The envelope, if it is a stretch of several sounds' sum.
+    /// The stretch of the envelope, for a sum of several sounds.
     pub(crate) rise: Option<Rise>,
 }
 
-/// An echo that was handed to the ring. It knows what it came from, and does not say so.
+/// An echo passed to the ring. It knows its cause but does not reveal it.
 #[derive(Clone, Copy, Debug)]
 pub struct Echo {
-    /// Since the firing, by the robot's clock.
+    /// Time since the firing, by the robot's clock.
     pub(crate) t_echo_us: u32,
     pub(crate) arrival: Arrival,
-    /// True if it was sent at the very moment at which the sensor fired: its own sound, or that of one which fired
-    /// together with it.
+    /// True if it was sent at the moment at which the sensor fired: by the sensor itself, or by one that fired together
+    /// with it.
     pub(crate) of_this_firing: bool,
 }
 
@@ -68,7 +68,7 @@ impl Echo {
         self.arrival.level_over_threshold_db
     }
 
-    /// Returns the sound at another time: what a filter makes of it that smooths.
+    /// Returns the sound at another time, for filters that smooth.
     #[must_use]
     pub const fn at(self, t_echo: Micros) -> Self {
         Self { t_echo_us: t_echo.as_micros(), ..self }
@@ -80,7 +80,7 @@ impl Echo {
 pub(crate) struct Hearing {
     pub(crate) blanking: u64,
     pub(crate) window: u64,
-    /// No later firing hears anything within this time of firing.
+    /// Time after a firing within which no later firing hears anything.
     pub(crate) refire: u64,
     /// Dead time after each echo of a sensor that reports several.
     pub(crate) dead_time: u64,
@@ -88,8 +88,7 @@ pub(crate) struct Hearing {
     pub(crate) gain: GainProfile,
     /// Time when the gain is full, in seconds.
     pub(crate) gain_full_s: f64,
-    /// Rise time of an echo, in nanoseconds, if that is when it is heard: over a burst. 0 for a receiver that hears
-    /// every echo at its onset.
+    /// Rise time of an echo, in nanoseconds, over a burst; 0 for a receiver that hears every echo at its onset.
     pub(crate) rise_ns: f64,
 }
 
@@ -117,8 +116,8 @@ impl Hearing {
         }
     }
 
-    /// Time from the onset of a sound until it is heard, by when it begins after the receiver has fired; `None` if it
-    /// is too faint.
+    /// Time from the onset of a sound until it is heard, for an onset at a time after the firing; `None` if it is too
+    /// faint.
     ///
     /// A threshold detector hears an echo whose envelope rises evenly over its burst when it has reached the threshold:
     /// at a level of `L` dB over that, `10^(-L / 20)` of a burst after the onset.
@@ -137,7 +136,7 @@ impl Hearing {
         Some(if self.rise_ns > 0.0 { (self.rise_ns * libm::exp10(-0.05 * level_db)) as u64 } else { 0 })
     }
 
-    /// Returns by how much an arrival is late, for a receiver that fired at this time.
+    /// Returns the lateness of an arrival, for a receiver that fired at this time.
     #[inline]
     pub(crate) fn late(&self, arrival: &Arrival, fired: u64) -> Option<u64> {
         let after = arrival.onset.saturating_sub(fired);
@@ -151,11 +150,11 @@ impl Hearing {
 /// One sensor's receiver.
 #[derive(Clone, Debug)]
 pub(crate) struct Receiver {
-    /// From when on an arrival would be heard; [`NEVER`] while it does not listen.
+    /// Time from which on an arrival would be heard; [`NEVER`] while it does not listen.
     open: u64,
-    /// Until when: the end of the window, or the next arrival for a sensor that reports one echo.
+    /// Time until which it listens: the end of the window, or the next arrival for a sensor that reports one echo.
     until: u64,
-    /// Arrivals up to this moment matter to the present firing only.
+    /// Time up to which arrivals matter only to the present firing.
     own_until: u64,
     /// Time when it last fired.
     pub(crate) fired: u64,
@@ -163,7 +162,7 @@ pub(crate) struct Receiver {
     pub(crate) firings: u32,
     /// The next arrival that it will hear.
     next: Option<Arrival>,
-    /// Arrivals yet to come, in no order.
+    /// Arrivals to come, in no order.
     pending: Vec<Arrival>,
     heard: [Echo; MAX_ECHOES],
     heard_count: usize,
@@ -182,21 +181,21 @@ impl Receiver {
         heard_count: 0,
     };
 
-    /// Returns the time when it will hear what is next, as far as is known now.
+    /// Returns the time of the next arrival that it will hear, as far as is known.
     #[inline]
     pub(crate) fn next_at(&self) -> u64 {
         self.next.map_or(NEVER, |next| next.at)
     }
 
-    /// Returns true if an arrival about this time, give or take `slack`, can matter. Most cannot, and need not be drawn
-    /// at all.
+    /// Returns true if an arrival at about this time, plus or minus `slack`, can matter. Most cannot, and need not be
+    /// drawn.
     #[inline]
     pub(crate) fn cares(&self, at: u64, slack: u64) -> bool {
         let latest = at + slack;
         latest > self.own_until || (latest >= self.open && at <= self.until.saturating_add(slack))
     }
 
-    /// Forgets what it heard before: its line is asked for a new firing.
+    /// Forgets its echoes, for a new firing of its line.
     pub(crate) fn forget(&mut self) {
         self.heard_count = 0;
     }
@@ -207,7 +206,7 @@ impl Receiver {
         self.listen(now, hearing);
     }
 
-    /// Begins to listen; what it heard before is still to be read.
+    /// Begins to listen; earlier echoes are still to be read.
     pub(crate) fn listen(&mut self, now: u64, hearing: &Hearing) {
         self.fired = now;
         self.firings += 1;
@@ -250,7 +249,7 @@ impl Receiver {
         }
     }
 
-    /// Hears what was next, `t_echo_us` after firing by the robot's clock.
+    /// Hears the next arrival, `t_echo_us` after firing by the robot's clock.
     pub(crate) fn hear(&mut self, t_echo_us: u32, hearing: &Hearing) {
         let Some(arrival) = self.next.take() else { return };
         if let Some(entry) = self.heard.get_mut(self.heard_count) {
@@ -282,14 +281,14 @@ impl Receiver {
         self.next = soonest.map(|index| self.pending.swap_remove(index));
     }
 
-    /// Loses what was next, and stops listening: nothing on its own line says it.
+    /// Loses the next arrival and stops listening, since the sensor's own line does not report it.
     pub(crate) fn lose(&mut self) -> Option<Arrival> {
         let lost = self.next.take();
         self.stop();
         lost
     }
 
-    /// The line says what another sensor has heard, if there is room for it.
+    /// Reports on this line an echo of another sensor, if there is room for it.
     pub(crate) fn report(&mut self, t_echo_us: u32, arrival: Arrival, hearing: &Hearing) {
         if self.heard_count < hearing.echoes.min(MAX_ECHOES) {
             self.heard[self.heard_count] = Echo { t_echo_us, arrival, of_this_firing: false };

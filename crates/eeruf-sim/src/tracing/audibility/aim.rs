@@ -1,4 +1,4 @@
-//! Largest strength that a transducer sends into a cone, or hears from it; and how far that is heard.
+//! Largest strength that a transducer sends into a cone, or hears from it, and the resulting range.
 
 use super::reach::Reach;
 use super::{at_cos, nearest_cos};
@@ -8,7 +8,7 @@ use crate::{
     scene::Pole,
 };
 
-/// A transducer's pattern about its axis, and what is just heard.
+/// A transducer's pattern about its axis, and the threshold of hearing.
 #[derive(Clone, Copy)]
 pub(crate) struct Aim<'a> {
     pub(super) envelope: &'a [f64],
@@ -23,18 +23,18 @@ impl Aim<'_> {
         self.axis
     }
 
-    /// Returns true if nothing leaves at right angles to the axis, or further behind.
+    /// Returns true if the pattern is zero at 90 degrees and beyond.
     pub(crate) fn is_cut(&self) -> bool {
         self.beam == Beam::CutAt90
     }
 
-    /// The longest path after which anything is heard, in metres.
+    /// The longest path, in metres, after which sound is heard.
     pub(crate) fn longest_m(&self) -> f64 {
         self.reach.at(1.0)
     }
 
-    /// The longest path, in metres, after which sound may be heard that leaves within a cone and has kept
-    /// `reflection_gain` of its amplitude. `axis` is the transducer's as seen in the cone's world.
+    /// The longest path, in metres, after which sound may be heard that leaves within a cone and keeps
+    /// `reflection_gain` of its amplitude at walls. `axis` is the transducer's as seen in the cone's world.
     #[inline]
     pub(crate) fn reach_m(&self, axis: Vector, left: Vector, right: Vector, reflection_gain: f64) -> f64 {
         let strongest = if cross(axis, left) >= 0.0 && cross(right, axis) >= 0.0 {
@@ -52,8 +52,8 @@ impl Aim<'_> {
         self.reach.at(strongest * reflection_gain * reflection_gain)
     }
 
-    /// The square, at most, of what leaves towards a pole and of what reflections have left of it: of a path's
-    /// amplitude all but spreading, air, and what happens beyond the pole.
+    /// Upper bound on the square of the amplitude sent towards a pole after reflections: without spreading, air, and
+    /// the part of the path beyond the pole.
     pub(crate) fn towards_pole(&self, image: Point, axis: Vector, pole: &Pole, reflection_gain: f64) -> f64 {
         let out = pole.centre - image;
         let nearest = nearest_cos(out, out.norm(), pole.radius_m, axis);

@@ -1,9 +1,9 @@
-//! A bound on what one pole returns, by which receivers are ruled out before its reflection is solved for.
+//! A bound on the echo of one pole, which rules out receivers before the reflection is solved.
 
 use super::{Audibility, nearest_cos};
 use crate::{geometry::Point, scene::Pole};
 
-/// A pole that the source's sound reaches; which receivers may hear it?
+/// A pole that the source's sound reaches, and the receivers that may hear it.
 ///
 /// ```text
 /// A^2 <= (a / 2) / (s' s (s' + s))
@@ -11,9 +11,9 @@ use crate::{geometry::Point, scene::Pole};
 pub(crate) struct EnsonifiedPole<'a> {
     pub(super) audibility: &'a Audibility,
     pub(super) pole: &'a Pole,
-    /// `s'`.
+    /// Distance before the pole, `s'`.
     pub(super) before_m: f64,
-    /// The known part of `A^2`: all but the receiver's pattern and `s' s (s' + s)`.
+    /// The known part of `A^2`: all except the receiver's pattern and `s' s (s' + s)`.
     pub(super) part: f64,
 }
 

@@ -1,8 +1,8 @@
-//! Early rejection of paths that are certainly too faint to be heard: decided from where they point, before anything
-//! expensive is computed.
+//! Early rejection of paths that are certainly too faint to be heard, from their directions, before anything expensive
+//! is computed.
 //!
-//! Every bound is an upper one, so that nothing audible is lost: the patterns by their envelope, a pole by the most
-//! that it can return, the air by what it takes on a slightly shorter way.
+//! Every bound is an upper one, so that nothing audible is lost: the patterns by their envelope, a pole by its greatest
+//! echo, the air by its loss on a slightly shorter path.
 
 mod aim;
 mod ensonified;
@@ -19,29 +19,29 @@ pub(super) use aim::Aim;
 pub(super) use ensonified::EnsonifiedPole;
 use reach::Reach;
 
-/// Resolution of the envelope: in equal steps of `sin(angle / 2)`.
+/// Number of equal steps of `sin(angle / 2)` in the envelope.
 const STEPS: usize = 1024;
-/// Resolution of the loss in the air, in steps per metre, and its range.
+/// Steps per metre for the loss in the air, and their range.
 const STEPS_PER_M: f64 = 32.0;
 const REACH_M: f64 = 32.0;
 
-/// One question's emitter and receivers, and what is just heard.
+/// Emitter, receivers and threshold of one query.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Audibility {
     /// The emitter's and the receivers' patterns.
     pistons: [Piston; 2],
-    /// True if paths rise and fall, so that they may point less far off an axis than they seem to in the plan.
+    /// True if paths rise and fall, so that they may be less far off an axis than in the plan.
     in_room: bool,
-    /// The highest squares of the two patterns from an angle on.
+    /// The highest squares of the two patterns beyond each angle.
     departing: Vec<f64>,
     arriving: Vec<f64>,
-    /// The amplitude that is just heard, and the natural logarithm of what the air leaves of one per metre, negative.
+    /// The threshold amplitude, and the natural logarithm of the air's attenuation per metre, negative.
     floor: f64,
     loss_per_m: f64,
-    /// By steps of length: a lower bound on the square of the amplitude that would just be heard if the air took
-    /// nothing.
+    /// For each step of length, a lower bound on the square of the amplitude that would just be heard without loss in
+    /// the air.
     faint: Vec<f64>,
-    /// Range of sound that leaves with a share of its strength.
+    /// Range of sound by its strength at departure.
     reach: Reach,
     /// Heading of the source.
     source: Vector,
@@ -49,7 +49,7 @@ pub(crate) struct Audibility {
 }
 
 impl Audibility {
-    /// For an emitter and receivers with these patterns, in a flat scene or in a room.
+    /// Audibility for an emitter and receivers with these patterns, in a flat scene or in a room.
     pub(crate) fn new([departing, arriving]: [Piston; 2], in_room: bool) -> Self {
         let ahead = Vector::x();
         Self {
@@ -70,7 +70,7 @@ impl Audibility {
         self.pistons == [*departing, *arriving] && self.in_room == in_room
     }
 
-    /// Sets the amplitude that is just heard, and the natural logarithm of what the air leaves of one per metre.
+    /// Sets the threshold amplitude, and the natural logarithm of the air's attenuation per metre.
     pub(crate) fn set_floor(&mut self, floor: f64, loss_per_m: f64) {
         if (self.floor, self.loss_per_m) == (floor, loss_per_m) && !self.faint.is_empty() {
             return;
@@ -86,7 +86,7 @@ impl Audibility {
         self.reach = Reach::new(floor, loss_per_m);
     }
 
-    /// Sets where source and receivers head.
+    /// Sets the headings of source and receivers.
     pub(crate) fn aim(&mut self, source_rad: f64, receivers: impl Iterator<Item = Vector>) {
         self.source = Vector::new(libm::cos(source_rad), libm::sin(source_rad));
         self.receivers.clear();
@@ -98,14 +98,13 @@ impl Audibility {
         Aim { envelope: &self.departing, reach: &self.reach, axis: self.source, beam: self.pistons[0].beam }
     }
 
-    /// Hearing of a receiver by direction: sound comes the same way as it would go. None where everything counts as
-    /// heard.
+    /// Hearing of a receiver by direction, as if sound went the other way. `None` if everything counts as heard.
     pub(crate) fn of_receiver(&self, receiver: usize) -> Option<Aim<'_>> {
         let axis = *self.receivers.get(receiver).filter(|_| self.floor > 0.0)?;
         Some(Aim { envelope: &self.arriving, reach: &self.reach, axis, beam: self.pistons[1].beam })
     }
 
-    /// The square of the emitter's pattern at most, by the cosine of the angle off its axis.
+    /// Upper bound on the square of the emitter's pattern, by the cosine of the angle off its axis.
     #[inline]
     fn sent(&self, cos: f64) -> f64 {
         at_cos(&self.departing, cos)
@@ -117,15 +116,15 @@ impl Audibility {
         at_cos(&self.arriving, cos)
     }
 
-    /// Least square of an amplitude that is heard after this length, but for the air.
+    /// Least square of an amplitude that is heard after this length, without the air.
     #[inline]
     fn faint(&self, length_m: f64) -> f64 {
         let step = ((length_m * STEPS_PER_M) as usize).min(self.faint.len().saturating_sub(1));
         self.faint.get(step).copied().unwrap_or(0.0)
     }
 
-    /// Returns true if a path over walls may be heard that leaves at an angle with this cosine off the source's axis,
-    /// and whose image the receiver sees in the direction `towards`, as long as the path.
+    /// Returns true if a path over walls may be heard: it leaves at an angle with this cosine off the source's axis,
+    /// and `towards` is the vector from the receiver to its image.
     #[inline]
     pub(crate) fn may_hear_image(
         &self,
@@ -150,8 +149,8 @@ impl Audibility {
         [towards(departure_rad).dot(&self.source), towards(arrival_rad).dot(&axis)]
     }
 
-    /// Returns true if a path of a room may be heard whose plan has these [cosines](Self::cosines) and whose elevation
-    /// has this one, if floor and ceiling leave `vertical` of it.
+    /// Returns true if a path of a room may be heard, given the [cosines](Self::cosines) of its plan, the cosine of its
+    /// elevation, and the share `vertical` that floor and ceiling leave.
     #[inline]
     pub(crate) fn may_hear_in_room(&self, plan: [f64; 2], cos_elevation: f64, vertical: f64, length_m: f64) -> bool {
         if self.receivers.is_empty() {
@@ -162,13 +161,13 @@ impl Audibility {
         sent >= least && sent * self.heard(plan[1] * cos_elevation) >= least
     }
 
-    /// The longest path, in metres, after which sound may be heard that is no louder than `most` over its length.
+    /// The longest path, in metres, after which sound may be heard whose amplitude is at most `most` over its length.
     pub(crate) fn reach_m(&self, most: f64) -> f64 {
         self.reach.at((most * most).min(1.0))
     }
 
-    /// Returns true if sound that leaves in the direction `out` may be heard after `least_m` or more, if it is no
-    /// louder than `most` over its length but for the patterns.
+    /// Returns true if sound that leaves in the direction `out` may be heard after `least_m` or more, if its amplitude
+    /// is at most `most` over its length, without the patterns.
     #[inline]
     pub(crate) fn may_ensonify(&self, most: f64, out: Vector, least_m: f64) -> bool {
         if !(self.floor > 0.0 && least_m > 0.0) {
@@ -178,7 +177,7 @@ impl Audibility {
         self.sent(cos) * most * most >= self.faint(least_m) * least_m * least_m
     }
 
-    /// Returns true if a path around an edge may be heard that is no louder than `most` but for the patterns; `out`
+    /// Returns true if a path around an edge may be heard whose amplitude is at most `most` without the patterns; `out`
     /// leads from the source to the edge, `home` from the receiver.
     #[inline]
     pub(crate) fn may_hear_around(&self, most: f64, receiver: usize, out: Vector, home: Vector, length_m: f64) -> bool {
@@ -187,8 +186,8 @@ impl Audibility {
         sent * self.heard(home.dot(axis) / home.norm()) * most * most >= self.faint(length_m)
     }
 
-    /// Returns true if a path over one pole may be heard that has been left this square of its amplitude by patterns
-    /// and walls, and has at least so far to go before and after the pole: by
+    /// Returns true if a path over one pole may be heard, given the square of its amplitude after patterns and walls
+    /// and its least lengths before and after the pole: by
     ///
     /// ```text
     /// A^2 <= square (a / 2) / (s' s (s' + s))
@@ -211,7 +210,7 @@ impl Audibility {
         left >= self.faint(length_m) * before_m * between_m * after_m * length_m
     }
 
-    /// Sound that falls on a pole.
+    /// Sound that reaches a pole.
     pub(crate) fn ensonify<'a>(&'a self, source: Point, pole: &'a Pole) -> EnsonifiedPole<'a> {
         let out = pole.centre - source;
         let far_m = out.norm();
@@ -221,8 +220,8 @@ impl Audibility {
     }
 }
 
-/// The highest squares of a pattern from an angle on. Each entry stands for all angles up to the next one's, so that an
-/// angle between two steps takes the value of the lower one, where the envelope is no less.
+/// The highest squares of a pattern beyond each angle. An angle between two steps takes the value of the lower one,
+/// where the envelope is no less.
 ///
 /// In a room sound may leave behind a sensor's plane by less than the plan shows, up to right beside it.
 fn envelope(piston: &Piston, in_room: bool) -> Vec<f64> {
@@ -243,7 +242,8 @@ fn envelope(piston: &Piston, in_room: bool) -> Vec<f64> {
     envelope
 }
 
-/// The cosine of the least angle off an axis at which a point of a circle lies, with its centre `out` from here.
+/// The cosine of the least angle off an axis at which a point of a circle lies, with the circle's centre at `out` from
+/// here.
 #[inline]
 fn nearest_cos(out: Vector, far_m: f64, radius_m: f64, axis: Vector) -> f64 {
     let (cos, sin_half) = (out.dot(&axis) / far_m, radius_m / far_m);

@@ -1,19 +1,19 @@
-//! Range of sound, by the strength with which it leaves.
+//! Range of sound, by its strength at departure.
 
-/// Steps in each octave of the square of an amplitude.
+/// Number of steps in each octave of the square of an amplitude.
 const STEPS_BITS: u32 = 2;
-/// Number of octaves down to which sound is looked up; fainter sound reaches as far as the faintest of these.
+/// Number of octaves in the table; fainter sound gets the range of the faintest entry.
 const OCTAVES: usize = 64;
 
 /// Upper bounds on the longest path that is heard.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Reach {
-    /// By steps of the square of the amplitude at 1 m, from the strongest on; empty if everything is heard.
+    /// Lengths by steps of the square of the amplitude at 1 m, from the strongest on; empty if everything is heard.
     lengths_m: Vec<f64>,
 }
 
 impl Reach {
-    /// For the amplitude that is just heard, and the natural logarithm of what the air leaves of one per metre.
+    /// Ranges for the threshold amplitude, and the natural logarithm of the air's attenuation per metre.
     pub(super) fn new(floor: f64, loss_per_m: f64) -> Self {
         if !(floor > 0.0) {
             return Self::default();
@@ -23,7 +23,7 @@ impl Reach {
         Self { lengths_m: (0..=steps).map(|step| longest_m(square_at_most(step).sqrt(), floor, loss_per_m)).collect() }
     }
 
-    /// The longest path after which sound may be heard that leaves with this square of an amplitude, up to 1.
+    /// The longest path after which sound may be heard that leaves with this square of an amplitude, at most 1.
     #[inline]
     pub(super) fn at(&self, square: f64) -> f64 {
         // Exponent and the first bits of the fraction number the steps, downwards from 1.
@@ -41,7 +41,7 @@ fn square_at_most(step: usize) -> f64 {
     f64::from_bits(((1f64.to_bits() >> (52 - STEPS_BITS)) - step as u64 + 1) << (52 - STEPS_BITS))
 }
 
-/// The longest path on which an amplitude of `sent` at 1 m stays above the floor, and a little more.
+/// The longest path on which an amplitude of `sent` at 1 m stays above the floor, slightly rounded up.
 fn longest_m(sent: f64, floor: f64, loss_per_m: f64) -> f64 {
     let (mut near, mut far) = (0.0, sent / floor);
     while far - near > 1e-4 * far {

@@ -1,6 +1,6 @@
 use crate::*;
 
-/// A room with poles, thin or thick, and a ring among them, by a number.
+/// A random room with thin or thick poles and a ring among them.
 fn random(number: u64) -> (Scene, Vec<Pose>) {
     let mut random = Random::new(number);
     let corners = [[0.0, 0.0], [9.0, 0.0], [9.0, 3.0], [6.0, 3.0], [6.0, 5.0], [0.0, 5.0], [0.0, 0.0]];
@@ -25,7 +25,8 @@ fn nothing_that_is_heard_is_kept_back() {
     assert!(continuous.2 > 100 && cut.2 == 0, "{cut:?} {continuous:?}");
 }
 
-/// Compares matrices with all paths weighed one by one; returns how many paths are heard, over poles, and from behind.
+/// Compares matrices with an evaluation of all paths one by one; returns how many paths are heard, over poles, and from
+/// behind.
 fn heard_as_weighed(beam: Beam) -> (usize, usize, usize) {
     let transducer = Transducer { beam, ..Transducer::POLAROID_6500 };
     let mut behind = 0;

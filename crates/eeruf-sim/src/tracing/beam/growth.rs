@@ -1,4 +1,4 @@
-//! Growth of a beam tree: the scene, how far, and for whom.
+//! Parameters of a beam tree's growth.
 
 use crate::tracing::audibility::Aim;
 use crate::{
@@ -7,28 +7,28 @@ use crate::{
     threads::Stop,
 };
 
-/// Growth of a tree.
+/// Parameters of a tree's growth.
 pub(crate) struct Growth<'a> {
     pub(crate) mesh: &'a Mesh,
     pub(crate) mirrors: &'a [Mirror],
     pub(crate) poles: &'a [Pole],
-    /// Triangles in which the poles lie that are looked for.
+    /// Triangles that contain the wanted poles.
     pub(crate) pole_triangles: &'a [(u32, u32)],
     /// Order below which beams look for poles.
     pub(crate) pole_order: u32,
     pub(crate) max_order: u32,
     pub(crate) max_length_m: f64,
     pub(crate) budget: usize,
-    /// Beams of the last order serve receivers only, not poles, and may be dropped where no receiver is.
+    /// True if beams of the last order serve receivers only, not poles, so that those that meet none may be dropped.
     pub(crate) last_for_receivers: bool,
-    /// Sound of the source by direction, if what is certainly too faint may be left out.
+    /// Sound of the source by direction, if certainly inaudible sound may be left out.
     pub(crate) aim: Option<Aim<'a>>,
-    /// Ends it early.
+    /// Switch that ends it early.
     pub(crate) stop: &'a Stop,
 }
 
 impl Growth<'_> {
-    /// The longest path of a beam within these limits that may be heard and is asked for, in metres.
+    /// The longest path of a beam, in metres, that may be heard and is wanted.
     #[inline]
     pub(super) fn reach_m(&self, axis: Vector, left: Vector, right: Vector, reflection_gain: f64) -> f64 {
         self.aim.map_or(self.max_length_m, |aim| self.max_length_m.min(aim.reach_m(axis, left, right, reflection_gain)))

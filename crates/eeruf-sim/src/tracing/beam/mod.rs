@@ -1,10 +1,10 @@
-//! The beam tree: every wall sequence along which something of the source's sound really gets through.
+//! The beam tree: every sequence of walls along which some of the source's sound really passes.
 //!
 //! A beam is an image of the source and a cone that looks through one visible piece of wall. It is walked through the
 //! triangles of the mesh; a corner inside the cone splits it, a wall turns it into a beam of the next order. The limits
 //! of a cone always point at mirrored *corners* of the scene, never at computed points of intersection, so that errors
-//! do not build up: a node is one piece of wall that is really seen, and the tree grows about quadratically with the
-//! order.
+//! do not accumulate. Each node is a piece of wall that is really visible, and the tree grows about quadratically with
+//! the order.
 
 mod growth;
 mod readout;
@@ -27,7 +27,7 @@ pub(crate) struct Beam {
     pub(super) right: Vector,
     /// The last wall's side of the mesh, by which the beam enters.
     pub(super) gate: u32,
-    /// The beam that it came from; `NONE` for the source's own.
+    /// The parent beam; `NONE` for the source's own.
     pub(crate) parent: u32,
     /// The last wall.
     pub(crate) wall: u32,
@@ -37,9 +37,9 @@ pub(crate) struct Beam {
     pub(crate) turn: f64,
     /// The product of the walls' reflections.
     pub(crate) reflection_gain: f64,
-    /// Heading of the source in the image's world, if that matters.
+    /// Heading of the source in the image's world, if it matters.
     pub(crate) axis: Vector,
-    /// No path of this beam that is longer can be heard, or is asked for.
+    /// Length beyond which no path of this beam is heard or wanted.
     pub(super) reach_m: f64,
 }
 
@@ -49,7 +49,7 @@ pub(crate) struct VisibleImage {
     pub(crate) length_m: f64,
     pub(crate) image: Point,
     pub(crate) turn: f64,
-    /// The product of the walls' reflections, if all were flat.
+    /// The product of the walls' reflections, as if all were flat.
     pub(crate) reflection_gain: f64,
     pub(crate) receiver: u32,
     pub(crate) order: u32,
@@ -57,11 +57,11 @@ pub(crate) struct VisibleImage {
     pub(crate) parent: u32,
     /// The last wall.
     pub(crate) wall: u32,
-    /// Heading of the source in the image's world, if that matters.
+    /// Heading of the source in the image's world, if it matters.
     pub(super) axis: Vector,
 }
 
-/// A cone that passes a triangle in which a pole stands.
+/// A cone that passes a triangle that contains a pole.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PoleCone {
     pub(crate) pole: u32,
@@ -72,13 +72,14 @@ pub(crate) struct PoleCone {
 }
 
 impl PoleCone {
-    /// Returns true if a point seen from the beam's image is in the cone, its limits included.
+    /// Returns true if a point, relative to the beam's image, is in the cone, its limits included.
     pub(crate) fn holds(&self, ahead: Vector) -> bool {
         cone_holds(self.left, self.right, ahead)
     }
 }
 
-/// Inclusive, with the relative tolerance that makes a path through the apex of a corner visible to both walls.
+/// Returns true if a point is in a cone, limits included, with a relative tolerance that makes a path through the apex
+/// of a corner visible to both walls.
 #[inline(always)]
 pub(super) fn cone_holds(left: Vector, right: Vector, ahead: Vector) -> bool {
     let (l, r) = (cross(ahead, left), cross(right, ahead));

@@ -1,4 +1,4 @@
-//! Results of a grown tree: the bounces of a path, and which images are loud enough.
+//! Results of a grown tree: the bounces of a path, and the images that are loud enough.
 
 use super::tree::BeamTree;
 use super::{Beam, VisibleImage};
@@ -21,7 +21,7 @@ impl BeamTree {
         push_chain(&self.beams, beam, bounces);
     }
 
-    /// Forgets what is certainly too faint or does not matter.
+    /// Drops images that are certainly too faint or do not matter.
     pub(crate) fn drop_faint(&mut self, audibility: &Audibility, matters: Option<Matters<'_>>, receivers: &[Point]) {
         self.visible_images.retain(|image| {
             if matters.is_some_and(|matters| !matters(image.receiver as usize, image.length_m)) {

@@ -1,8 +1,8 @@
-//! All receivers as one block of numbers, to drop beams of the last order that point at none of them.
+//! All receivers as one block of numbers, for dropping beams of the last order that meet none of them.
 
 use crate::geometry::{Point, SAME_DIRECTION, TOUCH_M, Vector, cross};
 
-/// Room for receivers that are tested as one block before a beam of the last order is walked at all.
+/// Number of receivers that are tested as one block before a beam of the last order is followed.
 const BLOCK: usize = 32;
 
 /// Positions of the receivers.
@@ -12,7 +12,7 @@ pub(super) struct ReceiverBlock {
     y: [f64; BLOCK],
     len: usize,
     all: bool,
-    /// A disc around all of them, to be quicker when they stand together.
+    /// A disc around all of them, which speeds up tests if they are close together.
     middle: Point,
     radius: f64,
 }
@@ -51,7 +51,7 @@ impl ReceiverBlock {
         (self.middle - from).norm_squared() > least_m * least_m
     }
 
-    /// Returns true if any receiver may be in the cone; when it says no, there is certainly none.
+    /// Returns true if any receiver may be in the cone; if it returns false, none is.
     #[inline]
     pub(super) fn may_see(&self, image: Point, left: Vector, right: Vector) -> bool {
         let ahead = self.middle - image;

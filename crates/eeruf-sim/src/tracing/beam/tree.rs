@@ -1,4 +1,4 @@
-//! Grows the beam tree: beams leave the source, walk through the mesh and are reflected at walls.
+//! Growth of the beam tree: beams leave the source, pass through the mesh and are reflected at walls.
 
 use super::growth::Growth;
 use super::receiver_block::ReceiverBlock;
@@ -9,11 +9,11 @@ use crate::{
     tracing::ends::Ends,
 };
 
-/// Number of beams that lie between two looks at whether to stop.
+/// Number of beams between two checks of the stop switch.
 const BEAMS_PER_LOOK: usize = 256;
-/// Marks a target as a pole.
+/// Marker of a target that is a pole.
 const POLE: u32 = 1 << 31;
-/// Something to be found in a triangle; a list per triangle.
+/// A point to be found in a triangle, in a list for each triangle.
 #[derive(Clone, Copy, Debug)]
 struct Target {
     at: Point,
@@ -30,14 +30,14 @@ struct Cone {
     right: Vector,
 }
 
-/// A beam on its way through the mesh.
+/// A beam in flight through the mesh.
 #[derive(Clone, Copy)]
 struct Flight<'a> {
     growth: &'a Growth<'a>,
     beam: &'a Beam,
     /// The beam's number in the tree.
     index: u32,
-    /// True if walls reflect it: not after the last order.
+    /// True if walls reflect it, as they do except for the last order.
     reflects: bool,
 }
 
@@ -47,7 +47,7 @@ pub(crate) struct BeamTree {
     pub(crate) beams: Vec<Beam>,
     pub(crate) visible_images: Vec<VisibleImage>,
     pub(crate) pole_cones: Vec<PoleCone>,
-    /// First target of each triangle; all [`NONE`] between questions.
+    /// First target of each triangle; all [`NONE`] between queries.
     heads: Vec<u32>,
     targets: Vec<Target>,
     stack: Vec<Cone>,
@@ -55,8 +55,8 @@ pub(crate) struct BeamTree {
 }
 
 impl BeamTree {
-    /// Grows the tree of a source in these triangles. Returns whether it is whole: neither the budget was spent nor the
-    /// work stopped.
+    /// Grows the tree of a source in these triangles. Returns true if it is complete: the budget was not spent, and the
+    /// work not stopped.
     pub(crate) fn grow(
         &mut self,
         growth: &Growth<'_>,
@@ -127,7 +127,7 @@ impl BeamTree {
         true
     }
 
-    /// From the source's own triangle (two on a side, a fan on a corner) out through its sides.
+    /// Leaves the source's own triangles (two on a side, a fan on a corner) through their sides.
     fn leave(&mut self, growth: &Growth<'_>, source: Point, triangles: &[u32]) {
         let beam = self.beams[0];
         let flight = Flight { growth, beam: &beam, index: 0, reflects: growth.max_order > 0 };
@@ -199,7 +199,7 @@ impl BeamTree {
         }
     }
 
-    /// Goes through an exit: into the next triangle (returned), or to a wall, where the beam of the next order starts.
+    /// Passes an exit: into the next triangle, which it returns, or to a wall, where the beam of the next order starts.
     #[inline(always)]
     fn leave_through(&mut self, flight: &Flight<'_>, exit: Exit, left: Vector, right: Vector) -> Option<u32> {
         match exit.beyond() {
@@ -246,7 +246,7 @@ impl BeamTree {
         });
     }
 
-    /// Looks for receivers and poles in a triangle that the cone passes.
+    /// Finds receivers and poles in a triangle that the cone passes.
     #[inline]
     fn look(&mut self, flight: &Flight<'_>, head: u32, triangle: u32, left: Vector, right: Vector) {
         let Flight { growth, beam, index, .. } = *flight;
@@ -298,8 +298,8 @@ impl BeamTree {
     }
 }
 
-/// Returns true if all that lies behind a gate is farther from a point than a length, given as its square: whether the
-/// gate's line is.
+/// Returns true if the line of a gate, and so all that lies behind it, is farther from a point than a length, given as
+/// its square.
 #[inline]
 fn is_beyond(gates: &[Gate], gate: u32, from: Point, length2: f64) -> bool {
     let first = gate - gate % 3;

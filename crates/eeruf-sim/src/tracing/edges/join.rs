@@ -1,5 +1,5 @@
-//! Ways by the ends of one wall that no burst tells apart: they are not heard each alone, but together by Fresnel's
-//! integral between them.
+//! Paths over the two ends of one wall that differ by less than a burst: they are heard as one, by Fresnel's integral
+//! between them.
 
 use super::{EdgePath, EdgeQuery, EdgeSearch, MOST};
 use crate::{
@@ -9,9 +9,8 @@ use crate::{
 };
 
 impl EdgeSearch {
-    /// Leaves out, of the ways that were found, those by the ends of a surface that reflects as well, and later than
-    /// that by less than a burst: the reflection has them already. Of a surface beside the point of reflection it makes
-    /// one way of two.
+    /// Removes paths over the ends of a surface that also reflects, if they are later by less than a burst: the
+    /// reflection includes them. If the point of reflection lies beside the surface, it merges the two paths into one.
     pub(super) fn join(&mut self, query: &EdgeQuery<'_>, burst_m: f64) {
         let EdgeQuery { scene, receivers, ends, .. } = *query;
         self.places.clear();
@@ -79,13 +78,13 @@ impl EdgeSearch {
     }
 }
 
-/// A surface between a source and a receiver that are both before it.
+/// A surface seen from its reflecting side by both source and receiver.
 struct Seen {
     /// Point of reflection on its line, from the surface's point on along its direction, in metres.
     point_m: f64,
-    /// The way by that point.
+    /// Length of the path by that point.
     length_m: f64,
-    /// True if the surface reaches there.
+    /// True if the surface contains that point.
     is_reflected: bool,
 }
 

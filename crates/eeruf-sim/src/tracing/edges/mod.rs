@@ -1,4 +1,4 @@
-//! Paths around one edge: source, edge, receiver, both in sight of it. Diffraction of the first order, of rigid wedges.
+//! Paths around one edge that is visible from both source and receiver: first-order diffraction at rigid wedges.
 
 mod join;
 
@@ -21,16 +21,16 @@ pub(crate) struct EdgePath {
     pub(crate) length_m: f64,
     pub(crate) departure_rad: f64,
     pub(crate) arrival_rad: f64,
-    /// Share of the amplitude that diffraction and spreading leave, at the wave number of the question.
+    /// Share of the amplitude after diffraction and spreading, at the wave number of the query.
     pub(crate) spread: f64,
-    /// The least without a bound, and that wave number; none of two ways that are heard as one.
+    /// The same share without its upper bound, and that wave number; `None` for two paths heard as one.
     unbounded: Option<[f64; 2]>,
-    /// The edge itself, by which doubles are recognised.
+    /// The edge, for recognising duplicates.
     pub(crate) at: Point,
 }
 
 impl EdgePath {
-    /// Share of the amplitude that is left at another wave number: Keller's coefficient falls with its square root.
+    /// Share of the amplitude at another wave number: Keller's coefficient falls with its square root.
     pub(crate) fn spread_at(&self, wave_number: f64) -> f64 {
         match self.unbounded {
             Some([unbounded, at]) if wave_number != at => {
@@ -42,26 +42,26 @@ impl EdgePath {
     }
 }
 
-/// Finds them; holds the buffers.
+/// A search for such paths, with buffers.
 #[derive(Debug, Default)]
 pub(crate) struct EdgeSearch {
     pub(crate) found: Vec<EdgePath>,
     /// The triangles of a point on a surface.
     triangles: Vec<u32>,
-    /// The edges that are looked at, in order.
+    /// The edges to be examined, in order.
     wanted: Vec<u32>,
     // Kept between questions for their memory.
     places: Vec<u32>,
     surfaces: Vec<u32>,
-    /// For each edge its place among those that are looked at, or [`NONE`].
+    /// For each edge its place among the examined ones, or [`NONE`].
     chosen: Vec<u32>,
 }
 
-/// The question.
+/// The input of a search.
 #[derive(Clone, Copy)]
 pub(crate) struct EdgeQuery<'a> {
     pub(crate) scene: &'a Scene,
-    /// Audibility, if what is certainly too faint may be left out.
+    /// Audibility, if certainly inaudible sound may be left out.
     pub(crate) audibility: Option<&'a Audibility>,
     pub(crate) source: Point,
     pub(crate) receivers: &'a [Point],
@@ -69,7 +69,8 @@ pub(crate) struct EdgeQuery<'a> {
     pub(crate) limits: Limits,
     /// In rad/m.
     pub(crate) wave_number: f64,
-    /// Ways by the ends of a wall whose lengths differ by less than this, in metres, are one. If none, each is alone.
+    /// Difference in length, in metres, below which paths over the two ends of a wall are one. `None` to keep all
+    /// separate.
     pub(crate) joined_m: Option<f64>,
 }
 
@@ -78,8 +79,8 @@ impl EdgeSearch {
         self.found.clear();
     }
 
-    /// Finds all paths around an edge to these receivers, but for those that are certainly too faint. Returns whether
-    /// these are all: whether the work was not stopped.
+    /// Finds all paths around an edge to these receivers, except those that are certainly too faint. Returns true
+    /// unless the work was stopped.
     pub(crate) fn search(&mut self, query: &EdgeQuery<'_>, stop: &Stop) -> bool {
         self.choose(query);
         let Some(joined_m) = query.joined_m else { return self.search_each(query, stop) };
@@ -99,8 +100,8 @@ impl EdgeSearch {
         true
     }
 
-    /// Chooses the edges around which somebody may be heard at all, and those that share a surface with one, since two
-    /// ends of a surface may be heard as one.
+    /// Selects the edges around which some receiver may hear, and those that share a surface with one, since two ends
+    /// of a surface may be heard as one.
     fn choose(&mut self, query: &EdgeQuery<'_>) {
         let EdgeQuery { scene, audibility, source, receivers, .. } = *query;
         let edges = scene.edges();
@@ -141,7 +142,7 @@ impl EdgeSearch {
         self.number();
     }
 
-    /// Numbers the edges that are looked at.
+    /// Numbers the selected edges.
     fn number(&mut self) {
         for (place, &edge) in (0..).zip(&self.wanted) {
             self.chosen[edge as usize] = place;
@@ -202,8 +203,8 @@ impl EdgeSearch {
     }
 }
 
-/// No more than this of an undisturbed wave of the same length: what the exact solution has on the limit of a shadow or
-/// of a reflection, where Keller's coefficient grows without bound.
+/// Upper bound relative to an undisturbed wave of the same length: the exact value on the limit of a shadow or of a
+/// reflection, where Keller's coefficient grows without bound.
 const MOST: f64 = 0.5;
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-//! The ways from a transducer to the poles: the beams of its tree that pass one, and how loud they are there at most.
+//! Legs from a transducer to the poles: the beams of its tree that pass one, with upper bounds on their loudness there.
 
 use crate::{
     geometry::{Point, Vector},
@@ -7,7 +7,7 @@ use crate::{
     tracing::beam::{Beam, BeamTree, PoleCone},
 };
 
-/// One way from a transducer to a pole: a beam that passes it.
+/// A leg from a transducer to a pole: a beam that passes it.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Leg {
     pub(super) pole: u32,
@@ -15,16 +15,16 @@ pub(super) struct Leg {
     pub(super) image: Point,
     pub(super) order: u32,
     pub(super) turn: f64,
-    /// The square of all that is left of the amplitude at the pole but spreading and air, at most.
+    /// Upper bound on the square of the amplitude at the pole, without spreading and air.
     pub(super) square: f64,
-    /// Distance from the image to the pole's axis, and at least to its surface, in metres.
+    /// Distance from the image to the pole's axis, and least distance to its surface, in metres.
     pub(super) far_m: f64,
     pub(super) least_m: f64,
-    /// The beam's cones through triangles in which the pole stands.
+    /// The beam's cones through triangles that contain the pole.
     cones: [u32; 2],
 }
 
-/// All ways from a transducer: by pole, of each those of low order first.
+/// All legs from a transducer: by pole, those of low order first.
 #[derive(Debug, Default)]
 pub(super) struct Legs {
     pub(super) legs: Vec<Leg>,
@@ -33,26 +33,26 @@ pub(super) struct Legs {
     next: Vec<u32>,
 }
 
-/// All ways from a receiver, found backwards.
+/// All legs from a receiver, found backwards.
 #[derive(Debug, Default)]
 pub(super) struct Home {
     pub(super) beams: Vec<Beam>,
     pub(super) legs: Legs,
-    /// Poles in plain sight.
+    /// Poles directly visible.
     pub(super) in_sight: Vec<Seen>,
 }
 
-/// A pole in plain sight of a transducer.
+/// A pole directly visible from a transducer.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Seen {
     pub(super) pole: u32,
-    /// As of a [`Leg`].
+    /// Upper bound as in a [`Leg`].
     pub(super) square: f64,
     pub(super) least_m: f64,
 }
 
 impl Home {
-    /// Takes the ways of a tree that was grown from the receiver, and its beams.
+    /// Stores the legs of a tree that was grown from the receiver, and its beams.
     pub(super) fn fill(&mut self, tree: &mut BeamTree, scene: &Scene, aim: Option<Aim<'_>>) {
         self.legs.fill(tree, scene, aim);
         core::mem::swap(&mut self.beams, &mut tree.beams);
@@ -62,7 +62,7 @@ impl Home {
 }
 
 impl Legs {
-    /// Writes the ways of a grown tree. Without an aim everything may be loud.
+    /// Stores the legs of a grown tree. Without an aim everything counts as audible.
     pub(super) fn fill(&mut self, tree: &BeamTree, scene: &Scene, aim: Option<Aim<'_>>) {
         self.take_by_pole(&tree.pole_cones, scene.poles().len());
         let Self { legs, cones, .. } = self;
@@ -81,7 +81,7 @@ impl Legs {
         }));
     }
 
-    /// Takes a tree's cones, which are in the order of its beams, with those of each pole together.
+    /// Regroups a tree's cones, which are in the order of its beams, by pole.
     fn take_by_pole(&mut self, of: &[PoleCone], poles: usize) {
         let Self { cones, next, .. } = self;
         next.clear();
@@ -103,20 +103,20 @@ impl Legs {
         unreflected.map(|leg| Seen { pole: leg.pole, square: leg.square, least_m: leg.least_m })
     }
 
-    /// The ways to one pole.
+    /// The legs to one pole.
     pub(super) fn to(&self, pole: u32) -> &[Leg] {
         let start = self.legs.partition_point(|leg| leg.pole < pole);
         let end = start + self.legs[start..].partition_point(|leg| leg.pole == pole);
         &self.legs[start..end]
     }
 
-    /// The leg's cones that hold a point seen from its image.
+    /// The leg's cones that contain a point, relative to its image.
     fn holding(&self, leg: &Leg, ahead: Vector) -> impl Iterator<Item = &PoleCone> + Clone {
         let [start, end] = leg.cones.map(|cone| cone as usize);
         self.cones[start..end].iter().filter(move |cone| cone.holds(ahead))
     }
 
-    /// Returns true if a point of a pole's surface is seen along this way and another one in one triangle.
+    /// Returns true if this leg and another one see a point of a pole's surface in the same triangle.
     pub(super) fn meet(&self, leg: &Leg, others: &Self, other: &Leg, at: Point, mesh: &Mesh) -> bool {
         let theirs = others.holding(other, at - other.image);
         let is_seen = |cone: &PoleCone| theirs.clone().any(|their| their.triangle == cone.triangle);

@@ -17,13 +17,13 @@ use crate::{
 use legs::{Home, Leg, Legs, Seen};
 pub(super) use shadow::is_shaded;
 
-/// The most problems of Alhazen that one question may try, some ten seconds.
+/// Largest number of Alhazen problems that one query may try, some ten seconds.
 const MAX_TRIED: usize = 1 << 25;
 
-/// Number of problems of Alhazen that lie between two looks at whether to stop.
+/// Number of Alhazen problems between two checks of the stop switch.
 const TRIED_PER_LOOK: usize = 64;
 
-/// A path with one pole, or two in turn.
+/// A path over one pole, or over two in turn.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PolePath {
     pub(crate) receiver: u32,
@@ -31,15 +31,15 @@ pub(crate) struct PolePath {
     pub(crate) order: u32,
     pub(crate) departure_rad: f64,
     pub(crate) arrival_rad: f64,
-    /// Image of the source, by which doubles are recognised.
+    /// Image of the source, for recognising duplicates.
     pub(crate) image: Point,
-    /// Share of the amplitude that the legs and the poles' curvature leave.
+    /// Share of the amplitude after spreading along the legs and at the poles' curvature.
     pub(crate) spread: f64,
     pub(crate) cos_incidence: [f64; 2],
     bounces: (u32, u32),
 }
 
-/// The question: a source whose tree is grown, and how far to follow its sound.
+/// The input of a search: a source whose tree is grown, and the limits.
 #[derive(Clone, Copy)]
 pub(crate) struct PoleQuery<'a> {
     pub(crate) scene: &'a Scene,
@@ -47,20 +47,20 @@ pub(crate) struct PoleQuery<'a> {
     pub(crate) source: Point,
     pub(crate) ends: &'a Ends,
     pub(crate) limits: Limits,
-    /// Audibility, if what is certainly too faint may be left out.
+    /// Audibility, if certainly inaudible sound may be left out.
     pub(crate) audibility: Option<&'a Audibility>,
     pub(crate) asked: Asked,
     /// Largest number of beams and paths.
     pub(crate) budget: usize,
-    /// Ends it early.
+    /// Switch that ends it early.
     pub(crate) stop: &'a Stop,
 }
 
-/// Place of a query among those with the same scene, receivers, limits and audibility, each with a source of its own.
+/// Position of a query in a series with the same scene, receivers, limits and audibility but different sources.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Asked {
     Once,
-    /// Made for the first of several times.
+    /// The first query of a series.
     First,
     Again,
 }
@@ -72,28 +72,28 @@ struct Receiver {
     at: Point,
 }
 
-/// The search for paths by way of poles, with its buffers.
+/// The search for paths over poles, with its buffers.
 #[derive(Debug, Default)]
 pub(crate) struct PoleSearch {
     pub(crate) found: Vec<PolePath>,
     bounces: Vec<Bounce>,
     from_source: Legs,
     back: BeamTree,
-    /// Homes of each receiver of this query, and of the last one if that asked the same.
+    /// Legs of each receiver of this query, and of the previous one if it had the same receivers.
     homes: Vec<Home>,
-    /// Number of those that are of now; the others are kept for their memory.
+    /// Number of valid entries; the others are kept for their memory.
     grown: usize,
     /// The triangles of points on poles.
     triangles: [Vec<u32>; 2],
-    /// From each pole's surface to the nearest receiver, at least, in metres.
+    /// For each pole, a lower bound on the distance from its surface to the nearest receiver, in metres.
     nearest_m: Vec<f64>,
-    /// Poles in plain sight of the source, from which it may be heard over another one; and those others, by their
-    /// numbers.
+    /// Poles directly visible from the source over which it may be heard by a second one, and those second poles, by
+    /// number.
     firsts: Vec<Seen>,
     seconds: Vec<bool>,
     /// Triangles of the poles over which the source may be heard.
     wanted: Vec<(u32, u32)>,
-    /// Problems of Alhazen tried so far.
+    /// Number of Alhazen problems tried so far.
     tried: usize,
 }
 
@@ -102,8 +102,8 @@ impl PoleSearch {
         &self.bounces[path.bounces.0 as usize..path.bounces.1 as usize]
     }
 
-    /// Finds all paths over poles to these receivers, but for those that are certainly too faint. Returns whether
-    /// these are all: neither the budget was spent nor the work stopped.
+    /// Finds all paths over poles to these receivers, except those that are certainly too faint. Returns true if these
+    /// are all: the budget was not spent, and the work not stopped.
     pub(crate) fn search(&mut self, query: &PoleQuery<'_>, receivers: &[Point]) -> bool {
         let PoleQuery { scene, tree, limits, audibility, budget, stop, .. } = *query;
         self.found.clear();
@@ -154,7 +154,7 @@ impl PoleSearch {
         true
     }
 
-    /// Forgets the source's ways to poles over which no receiver hears it, however near it is and wherever it heads.
+    /// Drops the source's legs to poles over which no receiver hears it, whatever its distance and heading.
     fn drop_faint(&mut self, audibility: &Audibility, scene: &Scene) {
         let Self { from_source, nearest_m, .. } = self;
         from_source.legs.retain(|leg| {
@@ -163,7 +163,7 @@ impl PoleSearch {
         });
     }
 
-    /// Chooses the poles over which in turn sound may be heard, however near a receiver is and wherever it heads.
+    /// Selects pairs of poles over which sound may be heard, whatever the receiver's distance and heading.
     fn pair_poles(&mut self, audibility: Option<&Audibility>, scene: &Scene) {
         let Self { from_source, nearest_m, firsts, seconds, .. } = self;
         firsts.clear();
@@ -185,7 +185,7 @@ impl PoleSearch {
         });
     }
 
-    /// Chooses the poles from which the source's sound may be heard.
+    /// Selects the poles over which the source's sound may be heard.
     fn choose_poles(&mut self, scene: &Scene) {
         let is_heard = |last: u32| self.seconds[last as usize] || !self.from_source.to(last).is_empty();
         self.wanted.clear();
@@ -196,7 +196,7 @@ impl PoleSearch {
         }
     }
 
-    /// Grows a receiver's ways to the poles, backwards. Returns whether they are all.
+    /// Grows a receiver's legs to the poles, backwards. Returns true if they are complete.
     fn grow_home(&mut self, query: &PoleQuery<'_>, receiver: Receiver) -> bool {
         let PoleQuery { scene, ends, limits, audibility, budget, stop, .. } = *query;
         let aim = audibility.and_then(|audibility| audibility.of_receiver(receiver.index as usize));
@@ -223,7 +223,7 @@ impl PoleSearch {
         complete
     }
 
-    /// Joins one of a receiver's ways to a pole with all of the source's.
+    /// Joins one of a receiver's legs to a pole with all of the source's.
     fn join(&mut self, query: &PoleQuery<'_>, home: &Home, behind: &Leg, receiver: Receiver) {
         let PoleQuery { scene, limits, audibility, stop, .. } = *query;
         let radius_m = scene.poles()[behind.pole as usize].radius_m;
@@ -247,7 +247,7 @@ impl PoleSearch {
         self.tried.is_multiple_of(TRIED_PER_LOOK) && stop.is_stopped()
     }
 
-    /// One pole between a beam of the source and a beam of the receiver.
+    /// Finds the paths over one pole between a beam of the source and a beam of the receiver.
     fn between(
         &mut self,
         query: &PoleQuery<'_>,
@@ -282,7 +282,7 @@ impl PoleSearch {
         self.push(receiver, order, [departure_rad, arrival_rad], &[(hit, pole.radius_m)], start);
     }
 
-    /// Source, one pole, receiver, both in sight of it: no trees are needed.
+    /// Finds the path over one pole that is directly visible from source and receiver, without trees.
     fn one_pole(&mut self, query: &PoleQuery<'_>, receivers: &[Point]) {
         let PoleQuery { scene, source, ends, limits, audibility, stop, .. } = *query;
         let mesh = scene.mesh();
@@ -317,7 +317,7 @@ impl PoleSearch {
         }
     }
 
-    /// Source, one pole, another pole, receiver, all in sight of each other.
+    /// Finds the paths from the source over two poles to the receiver, all directly visible.
     fn two_poles(&mut self, query: &PoleQuery<'_>, lasts: &[Seen], receiver: Receiver) {
         let PoleQuery { scene, source, ends, limits, audibility, stop, .. } = *query;
         let (at, poles, mesh) = (receiver.at, scene.poles(), scene.mesh());
@@ -386,13 +386,13 @@ impl PoleSearch {
     }
 }
 
-/// The way from a pole's surface to the nearest receiver, at least, in metres.
+/// Lower bound on the distance from a pole's surface to the nearest receiver, in metres.
 fn nearest_m(pole: &Pole, receivers: &[Point]) -> f64 {
     let far_m = receivers.iter().map(|at| (at - pole.centre).norm()).fold(f64::INFINITY, f64::min);
     (far_m - pole.radius_m).max(0.0)
 }
 
-/// Returns true if sound may be heard that bounces at these two poles in turn, which are not the same.
+/// Returns true if sound may be heard that bounces at these two different poles in turn.
 fn may_hear_two(audibility: Option<&Audibility>, scene: &Scene, before: &Seen, after: &Seen) -> bool {
     before.pole != after.pole
         && audibility.is_none_or(|audibility| {
@@ -403,7 +403,7 @@ fn may_hear_two(audibility: Option<&Audibility>, scene: &Scene, before: &Seen, a
         })
 }
 
-/// The direction at the source of what is `ahead` in the image's world.
+/// The direction at the source that corresponds to `ahead` in the image's world.
 fn unfolded(ahead: Vector, order: u32, turn: f64) -> f64 {
     let there = libm::atan2(ahead.y, ahead.x);
     wrap_angle(if order.is_multiple_of(2) { there - turn } else { turn - there })

@@ -1,5 +1,5 @@
-//! Shadows of poles. Sound bends around what is thinner than its first Fresnel zone, and does not reach what lies
-//! behind anything thicker.
+//! Shadows of poles. Sound bends around objects thinner than its first Fresnel zone, and does not reach places behind
+//! thicker ones.
 
 use crate::{
     geometry::Point,
@@ -7,7 +7,7 @@ use crate::{
     tracing::bounce_points::parts,
 };
 
-/// True if a pole stands in a path's way that is too thick there for sound to bend around: nearer to a leg than its
+/// Returns true if a pole blocks a path because it is too thick for sound to bend around: a leg passes it within its
 /// radius, which exceeds
 ///
 /// ```text
@@ -15,7 +15,7 @@ use crate::{
 /// ```
 ///
 /// `corners` are those of the path, ends included. Walls are mirrors, so `d1` and `d2` are counted along the path,
-/// bounces at walls and all, up to its ends or to the next pole or edge, which makes the sound spread again.
+/// across bounces at walls, up to its ends or to the next pole or edge, which makes the sound spread again.
 pub(in crate::tracing) fn is_shaded(scene: &Scene, corners: &[Point], bounces: &[Bounce], wavelength_m: f64) -> bool {
     for (start, end) in parts(bounces) {
         let whole_m: f64 = corners[start..=end].windows(2).map(|leg| (leg[1] - leg[0]).norm()).sum();

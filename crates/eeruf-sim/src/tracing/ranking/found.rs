@@ -1,4 +1,4 @@
-//! Results of the three searches, side by side: images seen over walls first, then paths over poles, then those around
+//! Results of the three searches in one sequence: images over walls first, then paths over poles, then paths around
 //! edges.
 
 use crate::geometry::{Point, TOUCH_M};
@@ -7,7 +7,7 @@ use crate::tracing::beam::{BeamTree, VisibleImage};
 use crate::tracing::edges::{EdgePath, EdgeSearch};
 use crate::tracing::poles::{PolePath, PoleSearch};
 
-/// Everything that was found, numbered in one sequence.
+/// All found paths, numbered in one sequence.
 #[derive(Clone, Copy)]
 pub(in crate::tracing) struct Found<'a> {
     pub(in crate::tracing) tree: &'a BeamTree,
@@ -45,7 +45,7 @@ impl<'a> Found<'a> {
         }
     }
 
-    /// True if two paths have the same number of bounces and the same image.
+    /// Returns true if two paths have the same number of bounces and the same image.
     pub(in crate::tracing) fn are_one(self, a: u32, b: u32) -> bool {
         let ((order_a, image_a), (order_b, image_b)) = (self.key(a), self.key(b));
         order_a == order_b && (image_a - image_b).norm() <= TOUCH_M

@@ -1,4 +1,4 @@
-//! Puts found paths in order: by receiver, then by length, each path once.
+//! Sorting of found paths by receiver, then by length, without duplicates.
 
 mod found;
 
@@ -7,8 +7,8 @@ use crate::geometry::TOUCH_M;
 use crate::scene::Bounce;
 pub(super) use found::{Found, FoundPath};
 
-/// The low bits of a sorting key hold the index of the path, the high ones those of its length: lengths are positive,
-/// so their bits are in the same order as they are.
+/// Mask of the low bits of a sorting key, which hold the index of the path; the high bits are those of its length,
+/// since the bits of positive numbers sort like the numbers.
 const INDEX: u64 = (1 << 24) - 1;
 const _: () = assert!(MAX_BEAMS as u64 <= INDEX);
 
@@ -20,7 +20,7 @@ pub(super) struct Rank {
     pub(super) index: u32,
 }
 
-/// The order of the paths of one question; holds the buffers.
+/// The order of the paths of one query, with buffers.
 #[derive(Debug, Default)]
 pub(super) struct Ranking {
     keys: Vec<u64>,
@@ -32,7 +32,7 @@ pub(super) struct Ranking {
 }
 
 impl Ranking {
-    /// Sorts what was found for this number of receivers.
+    /// Sorts the found paths for this number of receivers.
     pub(super) fn rank(&mut self, found: Found<'_>, receivers: usize) {
         self.sort(found, receivers);
         self.remove_doubles(found, receivers);
@@ -43,7 +43,7 @@ impl Ranking {
         &self.ranks
     }
 
-    /// Sorts by receiver, then length: a counting sort over receivers and a short sort of plain numbers within each.
+    /// Sorts by receiver, then length: a counting sort over receivers, and a short sort of plain numbers within each.
     fn sort(&mut self, found: Found<'_>, receivers: usize) {
         let walls = found.tree.visible_images.iter().map(|image| (image.receiver, image.length_m));
         let poles = found.poles.found.iter().map(|path| (path.receiver, path.length_m));
@@ -70,8 +70,8 @@ impl Ranking {
         }
     }
 
-    /// Puts the sorted paths in exact order and keeps one of several with the same order and image: what both wall
-    /// orders of a right-angle corner, or two pieces of one straight wall, find at their common point.
+    /// Sorts the paths exactly and removes duplicates with the same order and image: both wall orders of a right-angle
+    /// corner, or two pieces of one straight wall, find one at their common point.
     fn remove_doubles(&mut self, found: Found<'_>, receivers: usize) {
         self.ranks.clear();
         for receiver in 0..receivers {

@@ -1,4 +1,4 @@
-//! The faults of a world file: `[[fault]]`, with a kind and what that needs.
+//! The faults of a world file: `[[fault]]`, with a kind and its keys.
 
 use eeruf_files::{FileError, ScheduleFile, explain};
 use serde::{Deserialize, Serialize};
@@ -43,7 +43,7 @@ const KEYS: [&str; 15] = [
 ];
 
 impl FaultFile {
-    /// The keys that a kind needs beside `kind`, `robot`, `sensors`, `from_s` and `to_s`.
+    /// The keys that a kind needs besides `kind`, `robot`, `sensors`, `from_s` and `to_s`.
     fn needs(kind: &str) -> Option<&'static [&'static str]> {
         Some(match kind {
             "lost" | "uniform_noise" => &["share"],
@@ -91,7 +91,7 @@ fn set(table: &mut Table, key: &str, value: impl Into<Value>) {
 }
 
 impl Fault {
-    /// The faults that these tables say, with the keys of `[[fault]]` in a scene file.
+    /// The faults of these tables, with the keys of `[[fault]]` in a scene file.
     ///
     /// # Errors
     /// The error of the first invalid one.
@@ -116,7 +116,7 @@ impl Fault {
         each.collect::<Result<_, _>>().map_err(|error| error.message().to_owned())
     }
 
-    /// The table of `[[fault]]` in a scene file that says this.
+    /// The table `[[fault]]` of this fault, as in a scene file.
     pub fn to_table(&self) -> Table {
         // A kind is a table of numbers and a schedule, which TOML has.
         let mut table = Table::try_from(&self.kind).unwrap_or_default();

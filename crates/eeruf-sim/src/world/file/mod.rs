@@ -1,5 +1,5 @@
-//! Worlds in TOML files: walls, poles, air, robots, noise and seed. Whatever is wrong with one is reported in one line:
-//! file, line, field, value, what is expected.
+//! Worlds in TOML files: walls, poles, air, robots, noise and seed. Errors are reported in one line: file, line, field,
+//! value, expectation.
 
 mod fault;
 mod format;
@@ -42,7 +42,7 @@ impl World {
         Self::parse(&Source::read(file)?, no_reader)
     }
 
-    /// Reads a text; `file` stands in errors, and schedules are looked for beside it.
+    /// Reads a text; `file` is named in errors, and schedules are looked for beside it.
     ///
     /// # Errors
     /// As [`from_toml`](Self::from_toml).
@@ -86,7 +86,7 @@ impl World {
     }
 }
 
-/// Contents of a world file, a scene without robots too. The robots and the noise are not yet checked against it.
+/// Contents of a world file, which may have no robots. Robots and noise are not yet checked against the scene.
 #[derive(Debug)]
 pub struct WorldParts {
     /// Walls, poles and air.
@@ -106,7 +106,7 @@ pub struct WorldParts {
 }
 
 impl WorldParts {
-    /// Reads them from a text; `file` stands in errors, and schedules are looked for beside it.
+    /// Reads the parts from a text; `file` is named in errors, and schedules are looked for beside it.
     ///
     /// # Errors
     /// As [`World::from_text`], for what is wrong with the text or the scene.

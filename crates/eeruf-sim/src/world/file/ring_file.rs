@@ -1,4 +1,4 @@
-//! Robots out of ring files, whose reader the caller brings: it knows more of rings than a simulator needs.
+//! Robots from ring files, read by the caller's reader, which knows more about rings than a simulator needs.
 
 use std::path::Path;
 
@@ -15,7 +15,7 @@ use crate::{
 /// A reader of ring files: from the file and its text to the robot.
 pub type ReadRing = fn(&Path, &str) -> Result<RobotRing, FileError>;
 
-/// The reader of who has none.
+/// The reader for callers without one, which fails.
 pub(super) fn no_reader(file: &Path, _: &str) -> Result<RobotRing, FileError> {
     Err(FileError::new(
         file,
@@ -56,9 +56,8 @@ impl Robot {
     }
 }
 
-/// Adds to a robot's `T_delta`, and to its `path_change`, what its readings change from one firing of a sensor to the
-/// next at most when it drives so fast without odometry: `2 v (T_p + max |d|) / c` by its schedule, or as much of its
-/// period as the paper's waits span.
+/// Adds to a robot's `T_delta` and `path_change` the greatest change of readings between two firings of a sensor at
+/// this speed without odometry: `2 v (T_p + max |d|) / c` by its schedule, or by the paper's waits at its period.
 pub fn cover_motion(robot: &mut Robot, speed_m_s: f64) {
     let gap = robot.schedule.map_or_else(
         || Micros::new((u64::from(robot.period.as_micros()) * 5 / 4) as u32),

@@ -15,7 +15,7 @@ use crate::{
     world::{motion::Motion, robot::Robot},
 };
 
-/// Builds the robot with this index, which fires as all do unless it says how.
+/// Builds the robot with this index; it uses the common firing unless it has its own.
 pub(super) fn robot(
     source: &Source,
     index: usize,

@@ -1,4 +1,4 @@
-//! `[firing]` of a world file: how its robots are fired today.
+//! `[firing]` of a world file: the way in which its robots are fired today.
 
 use eeruf_core::{Micros, Phase};
 use eeruf_files::{FileError, ScheduleFile, explain};
@@ -24,7 +24,7 @@ pub(super) struct SketchFile {
     schedule: Option<Spanned<Value>>,
 }
 
-/// A table `[firing]`.
+/// Reads a table `[firing]`.
 pub(super) fn sketch(source: &Source, file: &SketchFile) -> Result<Sketch, FileError> {
     let default = Sketch::default();
     let table = file.schedule.as_ref().map(|value| {
@@ -88,7 +88,7 @@ impl Sketch {
         sketch(&source, &file).map_err(|error| error.message().to_owned())
     }
 
-    /// The table `[firing]` in a scene file that says this: what differs from the default.
+    /// The table `[firing]` of a scene file for these settings: the differences from the default.
     pub fn to_table(&self) -> Table {
         // Numbers, lists and tables, which TOML has.
         Table::try_from(SketchFile::from(self)).unwrap_or_default()

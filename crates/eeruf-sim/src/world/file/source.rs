@@ -1,4 +1,4 @@
-//! The text of a file, and the line of it that an error is about.
+//! The text of a file, and the line to which an error refers.
 
 use core::fmt;
 use core::ops::Range;
@@ -44,13 +44,13 @@ impl Source {
         file.schedule().map_err(here)
     }
 
-    /// An error at a field within a part of the text, or at the part's first line.
+    /// An error about a field within a part of the text; without a line of its own, at the part's first line.
     pub(super) fn error(&self, part: Option<Range<usize>>, field: &str, message: impl fmt::Display) -> FileError {
         FileError::new(&self.file, message).at_line(part.map(|part| self.line(part, field)))
     }
 
-    /// The line on which a field is set, which begins with its name or holds it in braces; entries of arrays of tables
-    /// span from their header on.
+    /// The line on which a field is set: it begins with the field's name or has it in braces. Entries of arrays of
+    /// tables begin at their header.
     pub(super) fn line(&self, part: Range<usize>, field: &str) -> u64 {
         let end = part.end.min(self.text.len());
         let start = part.start.min(end);

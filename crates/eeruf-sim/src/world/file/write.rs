@@ -1,4 +1,4 @@
-//! Writes a world file: what is read from it, as it is read.
+//! Writes a world file that reads back as the same world.
 
 use eeruf_core::{Micros, SensorLimits};
 use eeruf_files::ScheduleFile;
@@ -55,7 +55,7 @@ pub fn world_file(
     file.to_string()
 }
 
-/// Things that stand in no text yet.
+/// Wraps values that are in no text yet.
 fn nowhere<T>(of: T) -> Spanned<T> {
     Spanned::new(0..0, of)
 }
@@ -92,9 +92,8 @@ impl From<&Pose> for PoseFile {
     }
 }
 
-/// An angle whose pose is this one, bit for bit where there is one near by: sine and cosine are what a pose holds, and
-/// of those there are more than of angles. Where there is none, as after several turns, it is one whose pose differs in
-/// the last bits, and whose own heading is that angle again.
+/// An angle whose pose equals this one bit for bit, if there is one nearby: a pose stores sine and cosine, of which
+/// there are more than angles. Otherwise its pose differs in the last bits, and its own heading is that angle again.
 pub fn heading_rad(pose: &Pose) -> f64 {
     let angle = pose.rotation.angle();
     exact_angle(pose).or_else(|| exact_angle(&Pose::rotation(angle))).unwrap_or(angle)
@@ -133,7 +132,7 @@ impl From<&Body> for BodyFile {
 }
 
 impl MotionFile {
-    /// Nothing for a robot that stands.
+    /// Motion in a file's form; `None` for a robot that stands.
     fn of(motion: &Motion) -> Option<Self> {
         let none = Self { velocity_m_s: None, turn_deg_s: None, turn_rad_s: None, waypoints_m: None, speed_m_s: None };
         match motion {

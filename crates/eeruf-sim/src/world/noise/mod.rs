@@ -1,8 +1,7 @@
-//! Noise: how echoes fade and jitter, how many bursts come from outside, and the generator behind both.
+//! Noise: fading and jitter of echoes, bursts from outside, and the random numbers behind them.
 //!
-//! What happens to one arrival is a function of the seed, the firing and the path alone ([`Random::of`]), so that it
-//! does not depend on the order in which arrivals are looked at, on the method that is simulated, or on the number of
-//! threads.
+//! The noise of one arrival is a function of the seed, the firing and the path alone ([`Random::of`]), so that it does
+//! not depend on the order of arrivals, on the method, or on the number of threads.
 
 mod normal;
 
@@ -17,13 +16,13 @@ pub(crate) use normal::{FARTHEST, Normal};
 #[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(default, deny_unknown_fields)]
 pub struct Noise {
-    /// Root mean square by which each arrival's level fades or grows, in dB.
+    /// Root mean square of each arrival's change of level, in dB.
     pub fading_db_rms: f64,
-    /// Root mean square by which each arrival is early or late, in microseconds.
+    /// Root mean square of each arrival's change of time, in microseconds.
     pub jitter_us_rms: f64,
     /// Mean number of bursts from outside (compressed air, keys, another make of sensor) that are heard in a second.
     pub bursts_per_s: f64,
-    /// Level above what is just heard, in dB.
+    /// Level above the threshold, in dB.
     pub burst_db: f64,
 }
 
@@ -35,7 +34,7 @@ impl Default for Noise {
 }
 
 impl Noise {
-    /// None at all.
+    /// No noise.
     pub const NONE: Self = Self { fading_db_rms: 0.0, jitter_us_rms: 0.0, bursts_per_s: 0.0, burst_db: 0.0 };
 
     pub(crate) fn check(&self) -> Result<(), WorldError> {

@@ -2,17 +2,17 @@
 
 use std::sync::LazyLock;
 
-/// Number of equal shares that the normal distribution is cut into.
+/// Number of equal parts of the normal distribution in the table.
 const SHARES: usize = 1024;
-/// No normal number drawn here is farther from zero: one in 16,000 would be.
+/// Largest magnitude of a number drawn here; one in 16,000 would exceed it.
 pub(crate) const FARTHEST: f32 = 4.0;
 
-/// Draws two normal numbers at a time from a table of the distribution's quantiles, straight between two of them.
+/// A generator of normal numbers from a table of the distribution's quantiles, interpolated linearly.
 #[derive(Debug)]
 pub(crate) struct Normal([f32; SHARES + 1]);
 
 impl Normal {
-    /// The table, made when it is first asked for.
+    /// The table, made on demand.
     pub(crate) fn shared() -> &'static Self {
         static NORMAL: LazyLock<Normal> = LazyLock::new(Normal::new);
         &NORMAL
@@ -46,7 +46,7 @@ impl Normal {
     }
 }
 
-/// The standard normal number that a share `p` lies below, by bisection of the error function.
+/// The standard normal number below which a share `p` lies, by bisection of the error function.
 fn quantile_of(p: f64) -> f64 {
     let (mut low, mut high) = (-f64::from(FARTHEST), f64::from(FARTHEST));
     for _ in 0..60 {

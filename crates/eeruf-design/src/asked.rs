@@ -5,7 +5,7 @@ use eeruf_sim::experiments::rooms::{RoomGroup, RoomsOptions};
 /// Rooms and limits for judging ways of firing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RoomsAsked {
-    /// Rooms of the caller's own; none for those of the set.
+    /// Rooms of the caller; empty for those of the set.
     pub own: Vec<RoomGroup>,
     /// Number of rooms of each kind of the set. The default is 6.
     pub places: u64,
@@ -14,7 +14,7 @@ pub struct RoomsAsked {
     pub first: u64,
     /// True for a robot that drives, at the ring's `speed_m_s` or 0.3 m/s.
     pub driving: bool,
-    /// The largest share of foreign sound in what is believed, of a way that is recommended. The default is 0.03.
+    /// The largest share of foreign sound among believed readings that a recommended way may have. The default is 0.03.
     pub wrong: f64,
 }
 

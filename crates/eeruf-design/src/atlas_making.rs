@@ -10,7 +10,7 @@ use crate::atlas::{Ring, Row};
 use crate::certificate::{Stated, certify};
 
 /// Budget of nodes for the search of a ring, the choice among its shortest schedules, and the proof of its certificate;
-/// with more than 16 sensors fewer, since each costs more.
+/// fewer with more than 16 sensors, since nodes cost more.
 const BUDGET: u64 = 20_000;
 const PREFERENCE_BUDGET: u64 = 20_000;
 const CERTIFICATE_BUDGET: u64 = 40_000;
@@ -32,7 +32,7 @@ pub fn make(ring: &Ring) -> Result<Row, String> {
     searched(ring, scaled(BUDGET, ring)).and_then(|row| again(&row, 0))
 }
 
-/// The row as this search finds it, without what a longer look at it adds.
+/// The row from this search, without a longer search.
 fn searched(ring: &Ring, nodes: u64) -> Result<Row, String> {
     let found = ring.problem().shortest(nodes, &mut ()).map_err(|error: SearchError| error.to_string())?;
     let [period, bound] = [found.period(), found.bound].map(in_ticks);
@@ -40,7 +40,7 @@ fn searched(ring: &Ring, nodes: u64) -> Result<Row, String> {
     Ok(Row { ring: *ring, period, bound, certified: 0, hash: String::new(), preferred, fire })
 }
 
-/// Rows are in ticks of a millisecond.
+/// The length of a row's tick: a millisecond.
 fn in_ticks(time: Micros) -> u32 {
     time.as_micros() / 1000
 }
@@ -52,8 +52,8 @@ fn fire_of(ring: &Ring, schedule: &AnySchedule) -> [Vec<u32>; 2] {
     })
 }
 
-/// The row with what `nodes` more find, if it is open; if it is newly proven with the schedule to prefer; and with its
-/// certificate.
+/// The row after a search of `nodes` more nodes, if it is open: with the preferred schedule if the row is newly proven,
+/// and with its certificate.
 ///
 /// # Errors
 /// As for [`make`].
@@ -81,7 +81,7 @@ pub fn again(row: &Row, nodes: u64) -> Result<Row, String> {
 /// The certificate of a row's schedule and bound.
 ///
 /// # Errors
-/// If what the row says is wrong.
+/// If the row's claim is wrong.
 pub fn certificate_of(row: &Row) -> Result<String, NoProof> {
     let problem = row.ring.problem();
     let schedule = row.schedule(problem.tick).ok_or_else(|| NoProof::Claim("no schedule".to_owned()))?;

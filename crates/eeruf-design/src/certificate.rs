@@ -7,8 +7,8 @@ use eeruf_files::AnySchedule;
 use eeruf_period::PeriodProblem;
 use eeruf_period::engine::prove::{NoProof, prove_what_can_be};
 
-/// The text of the certificate that a schedule's period is the shortest, or that none is below `bound`; or a lower
-/// bound, where that proof has more than `budget` nodes or `go_on`, which is given the nodes so far, says no.
+/// The text of the certificate that a schedule's period is the shortest, or that none is below `bound`; or for a lower
+/// bound, if that proof has more than `budget` nodes or if `go_on`, called with the nodes so far, returns false.
 ///
 /// # Errors
 /// The claim is wrong.
@@ -29,14 +29,15 @@ pub struct Stated {
     pub period: u32,
     /// Proven bound of the period, in ticks.
     pub bound: u32,
-    /// The nodes of the proof's tree, at most: two for each branching, as many as sensors if one of them fires next.
+    /// Upper limit of the nodes of the proof's tree: two for each branching, or as many as sensors if the branching is
+    /// on which fires next.
     pub nodes: usize,
     /// A tick is `tick_us.0 / tick_us.1` microseconds.
     tick_us: (u32, u32),
 }
 
 impl Stated {
-    /// The claim of a certificate that was written here; `None` for other texts.
+    /// The claim of a certificate that this crate wrote; `None` for other texts.
     #[must_use]
     pub fn read(certificate: &str) -> Option<Self> {
         let numbers = |word: &str| {

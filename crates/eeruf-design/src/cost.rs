@@ -1,4 +1,4 @@
-//! A ring judged as its file says it is used: how soon it sees what appears, by the one cost of
+//! A ring judged under the conditions that its file names: by how soon it sees things that appear, with the cost of
 //! [`measure`](eeruf_sim::experiments::measure).
 
 use eeruf_sim::Robot;
@@ -16,18 +16,18 @@ use crate::way::Way;
 
 /// The rate of turn of a robot whose file has none, in degrees a second: a choice.
 const USUAL_TURN_DEG_S: f64 = 45.0;
-/// The number of the first room in which votes are chosen. Nothing is reported from them.
+/// The number of the first room in which votes are chosen. They are not used for reports.
 pub const CHOICE: u64 = 1_000;
-/// Divisor of the number of rooms in which votes are chosen, and of those under conditions that the file does not name.
+/// Divisor of the number of rooms for choosing votes, and for conditions that the file does not name.
 const LESS: u64 = 3;
 
-/// Ways of firing a ring by the one cost.
+/// Ways of firing a ring, compared by cost.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct CostAnswer {
     /// The kind of way to recommend; none if no kind has a setting of at most one false stop a minute under each
     /// condition.
     pub recommended: Option<String>,
-    /// One of less cost from which it does not surely differ.
+    /// A kind of less cost that does not differ significantly from it.
     pub draw: Option<String>,
     /// The robot's speed in m/s.
     pub speed_m_s: f64,
@@ -46,7 +46,7 @@ pub struct KindCost {
     pub kind: String,
     /// The cost: the geometric mean over the conditions of its t95, relative to the best one by one.
     pub cost: Option<Estimate>,
-    /// The best way of the kind under each condition.
+    /// The best way of this kind under each condition.
     pub best: Vec<BestWay>,
 }
 
@@ -59,21 +59,22 @@ pub struct BestWay {
     pub way: &'static str,
     /// Votes that its readings need.
     pub votes: String,
-    /// False for a way with more than one false stop a minute where votes were chosen: no way of the kind has fewer.
+    /// False if the way has more than one false stop a minute in the rooms where votes were chosen, as has every way of
+    /// its kind.
     pub keeps: bool,
     /// The figures.
     #[serde(flatten)]
     pub figures: Cell,
 }
 
-/// Measurements in rooms for choosing votes, and in those that are reported.
+/// Measurements in the rooms for choosing votes, and in the rooms for reports.
 struct Both {
     chosen: Measured,
     measured: Measured,
 }
 
 impl Both {
-    /// Returns the measurements under these conditions alone.
+    /// Returns the measurements under these conditions only.
     fn under(&self, conditions: &[Condition]) -> Self {
         let only = |of: &Measured| Measured {
             ways: of.ways.clone(),
@@ -117,8 +118,8 @@ impl RingSpec {
         self.turn_deg_s.filter(|&deg_s| deg_s > 0.0).unwrap_or(USUAL_TURN_DEG_S)
     }
 
-    /// The conditions under which it is used: standing, driving and turning, alone; where the file says that there are
-    /// others, beside another robot of its make too.
+    /// The conditions under which the ring is used: standing, driving and turning, alone; and if the file says that
+    /// there are other robots, beside one of its make.
     pub fn used_under(&self) -> &'static [Condition] {
         if self.meets_others { &Condition::ALL } else { &Condition::ALL[..3] }
     }

@@ -1,4 +1,5 @@
-//! The shortest period for a ring, the schedule to prefer of those that have it, and what would make it shorter.
+//! The shortest period for a ring, the preferred schedule among those that have it, and changes that would make it
+//! shorter.
 
 use std::error::Error;
 use std::fmt;
@@ -14,7 +15,7 @@ use crate::ring::RingSpec;
 use crate::shortest::{Effort, FoundPeriod, shortest};
 use crate::what_if::WhatIf;
 
-/// The number of larger separations that are tried where firings cannot be moved apart.
+/// Number of larger separations that are tried if firings cannot be moved apart.
 const HANDLING_STEPS: u32 = 8;
 /// Budget of nodes, times the square of the number of sensors, for the certificate of an answer, so that it takes
 /// no longer than the search.
@@ -32,7 +33,7 @@ pub struct RingDesign {
     /// The shortest period, or the best found.
     pub found: Found<MAX_SENSORS>,
     /// The ring with a `t_delta` for which `bound` holds: the least that any schedule needs at that period, or the
-    /// design's own; the ring itself if it stands.
+    /// design's own; for a robot that stands, the ring itself.
     pub bounding: RingSpec,
     /// The bound on the period of every schedule for `bounding`: what a certificate can state.
     pub bound: Option<Micros>,
@@ -42,7 +43,7 @@ pub struct RingDesign {
     pub to_spare: Option<ToSpare>,
     /// True if period and schedule are the atlas's, and nothing was searched.
     pub from_atlas: bool,
-    /// No period is shorter than this by the certificate of the atlas's row; see [`certified`](Self::certified).
+    /// Bound of the period by the certificate of the atlas's row; see [`certified`](Self::certified).
     pub(crate) known_certified: Option<Micros>,
     /// Changes that would shorten it, if they were asked for.
     pub what_if: Vec<WhatIf>,
@@ -53,11 +54,11 @@ pub struct RingDesign {
 pub enum NoDesign {
     /// Needs that make no sense or are too large to search.
     Search(SearchError),
-    /// Longer periods ask for more separation, and that for longer periods, without end.
+    /// Longer periods need more separation, which needs longer periods, without end.
     TooFast,
-    /// The budget or the caller ended the search before its proof, and what it had found is too slow for the speed.
+    /// The budget or the caller ended the search before its proof, and the best schedule is too slow for the speed.
     EndedEarly,
-    /// No way that was tried keeps firings of the shortest period apart by `handling_us`.
+    /// No attempt kept the firings of the shortest period apart by `handling_us`.
     Handling,
 }
 
@@ -91,7 +92,7 @@ impl From<SearchError> for NoDesign {
 }
 
 impl RingDesign {
-    /// The gain from relaxing one need; nothing where the period is not proven.
+    /// The gains from relaxing one need at a time; empty if the period is not proven.
     ///
     /// # Errors
     /// As for [`RingSpec::shortest`].
@@ -107,8 +108,8 @@ impl RingDesign {
         certify(&self.bounding.problem(), &self.schedule, self.bound, budget, go_on)
     }
 
-    /// The period below which a certificate of a few thousand nodes proves that there is none, if the period is proven:
-    /// the period itself where that proof suffices.
+    /// The bound that a certificate of a few thousand nodes proves, if the period is proven: the period itself if so
+    /// small a proof suffices.
     pub fn certified(&self) -> Option<Micros> {
         let proof = || {
             let budget = CERTIFICATE_BUDGET / self.spec.sensors.max(16).pow(2);
@@ -154,8 +155,8 @@ impl RingSpec {
         }
     }
 
-    /// The design for a controller that fires one sensor after the other: firings are moved apart. Where the shortest
-    /// period has no room for that, the next ones are taken that have more separation.
+    /// The design for a controller that fires one sensor after the other: firings are moved apart. If the shortest
+    /// period has no room for that, longer ones with more separation are tried.
     fn one_by_one(
         &self,
         at_once: RingDesign,
@@ -194,7 +195,7 @@ impl RingSpec {
         Ok(self.design(shortest.schedule, shortest, self.clone()))
     }
 
-    /// The design of a schedule that serves this ring at its own `t_delta`.
+    /// The design with a schedule that serves this ring at its own `t_delta`.
     pub(crate) fn design(&self, schedule: AnySchedule, shortest: FoundPeriod, bounding: Self) -> RingDesign {
         let FoundPeriod { found, reason, to_spare, from_atlas, certified, .. } = shortest;
         let t_delta = self.t_delta_needed(&schedule).max(bounding.t_delta);

@@ -11,33 +11,33 @@ use crate::ring::RingSpec;
 pub struct FlowDesign {
     /// Settings of its firing.
     pub turns: TurnSettings,
-    /// The belief in its readings.
+    /// Settings of its judge.
     pub belief: BeliefSettings,
     /// The longest time for which its sensors listen.
     pub window: Micros,
     /// Deaf time after a firing.
     pub blanking: Micros,
-    /// Limits of single sensors, without the lines that they share; none where all are alike.
+    /// Limits of single sensors, without the lines that they share; `None` if all are alike.
     pub limits: EachSensor<MAX_SENSORS>,
 }
 
-/// From this speed on, in m/s, a robot listens by flow no farther than it needs to. A slower one can wait: a choice.
+/// Speed in m/s from which on a flow ring listens no farther than the robot needs to see, a choice: a slower robot can
+/// wait.
 const FAST_M_S: f64 = 1.0;
-/// The range that driving among obstacles takes in at any speed, in metres: a choice, by courses among poles below
-/// 2,000.
+/// The range in metres that driving among obstacles needs at any speed: a choice, by courses among poles below 2,000.
 const NEAR_M: f64 = 2.4;
-/// Braking in m/s^2, and the time before it in seconds: choices, those of a heavy platform.
+/// Deceleration in m/s^2, and reaction time in seconds: choices, those of a heavy platform.
 const BRAKES_M_S2: f64 = 1.0;
 const REACTS_S: f64 = 0.2;
 
-/// The range that a fast robot needs, in metres: as far as it drives until it stands, and what is near. None for a
-/// robot that is slower than 1 m/s, which listens as far as its modules see.
+/// The range that a fast robot needs, in metres: its stopping distance plus the range needed near obstacles. `None`
+/// below 1 m/s, where a ring listens as far as its modules see.
 pub fn needs_to_see_m(speed_m_s: f64) -> Option<f64> {
     let stops_m = 0.5 * speed_m_s * speed_m_s / BRAKES_M_S2 + REACTS_S * speed_m_s;
     (speed_m_s >= FAST_M_S).then(|| stops_m.max(NEAR_M))
 }
 
-/// Returns the settings for firing a robot's sensors in turn, with the seed of their dice.
+/// Returns the settings for firing a robot's sensors in turn, with this seed of the random gaps.
 pub fn turns_of(robot: &Robot, seed: u32) -> TurnSettings {
     let &Robot { window, blanking, audible, .. } = robot;
     // A sensor that fires while its last sound is heard would take old echoes for new ones.
@@ -61,13 +61,13 @@ impl RingSpec {
         Ok(self.flow_of(&Robot { others: self.others, reach: self.reach(), ..robot }.by_flow(), seed))
     }
 
-    /// The time for which a fast ring listens by flow, where only its modules say how far they see.
+    /// The listening time of a fast flow ring, if only its modules say how far they see.
     pub(crate) fn reach(&self) -> Option<Micros> {
         let fast_m_s = self.speed_mm_s.filter(|_| self.sees_by_module).map(|mm| f64::from(mm) / 1e3)?;
         Some(self.c.echo_time((1e3 * needs_to_see_m(fast_m_s)?).round() as u32).min(self.listening))
     }
 
-    /// Returns the design of its robot as it was judged in rooms.
+    /// Returns the flow design of its robot as judged in rooms.
     pub fn flow_of(&self, robot: &Robot, seed: u32) -> FlowDesign {
         let &Robot { window, blanking, ref limits, ref together, .. } = robot;
         let needs = self.problem().requirements;

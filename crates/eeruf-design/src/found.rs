@@ -5,7 +5,7 @@ use eeruf_core::{MAX_SENSORS, Micros};
 use eeruf_files::ScheduleFile;
 use serde::Serialize;
 
-/// Found, as Python names it.
+/// The result of a search, with Python's names.
 #[derive(Default, Serialize)]
 pub struct FoundJson {
     /// The schedule, if there is one.
@@ -16,26 +16,26 @@ pub struct FoundJson {
     pub bound_us: Option<u32>,
     /// True if no better schedule exists.
     pub proven: bool,
-    /// True if a schedule of the given period meets all needs, false if none does; only `design --period` says it.
+    /// True if a schedule of the given period meets all needs, false if none does; only from `design --period`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fits: Option<bool>,
     /// Nodes visited.
     pub nodes: u64,
     /// Duration of the search.
     pub seconds: f64,
-    /// Reason why nothing is better; only `design` says it.
+    /// Reason why nothing is better; only from `design`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
-    /// True if the atlas answered, and nothing was searched; only `design` says it.
+    /// True if the atlas answered, and nothing was searched; only from `design`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub from_atlas: Option<bool>,
-    /// Bound of the period by a short certificate; only `design` says it, of a period that is proven.
+    /// Bound of the period by a short certificate, if the period is proven; only from `design`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub certified_us: Option<u32>,
 }
 
 impl FoundJson {
-    /// Returns the JSON of what was found after this many seconds, without a reason.
+    /// Returns the JSON of a result after this many seconds, without a reason.
     pub fn new(found: &Found<MAX_SENSORS>, seconds: f64) -> Self {
         Self {
             schedule: found.schedule.as_ref().map(ScheduleFile::from),

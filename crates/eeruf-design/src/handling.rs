@@ -11,14 +11,13 @@ use eeruf_period::Random;
 
 use crate::ring::RingSpec;
 
-/// The number of ways to move firings apart that are tried.
+/// Number of attempts to move firings apart.
 const TRIES: u32 = 5_000;
 const SEED: u64 = 1;
 
 impl RingSpec {
-    /// Returns the schedule with all firings apart by what the controller needs for one: of the ways that were tried
-    /// the one that keeps most separation; none if none of them keeps what the ring needs. Those that fire together by
-    /// demand still do.
+    /// Returns the schedule with all firings apart by what the controller needs for one: the attempt that keeps most
+    /// separation; `None` if no attempt meets the ring's needs. Sensors declared `together` still fire together.
     pub(crate) fn moved_apart(&self, schedule: &AnySchedule) -> Option<AnySchedule> {
         if self.handling == Micros::ZERO {
             return Some(*schedule);
@@ -50,8 +49,8 @@ impl RingSpec {
         ways.max_by_key(|way| way.verify(&requirements).max_t_delta())
     }
 
-    /// The schedule of these firing times, if it meets the ring's needs and no firing comes sooner after another one.
-    /// All are moved into the middle of the period: what is to be done at its end makes no firing late.
+    /// The schedule of these firing times, if it meets the ring's needs and keeps all firings apart. All are moved to
+    /// the middle of the period, so that work at its end delays no firing.
     fn is_met_apart(&self, t_fire: &[[Micros; MAX_SENSORS]; 2], period: Micros) -> Option<AnySchedule> {
         let times = t_fire.each_ref().map(|times| times.get(..self.sensors).unwrap_or_default());
         let first = times.map(|times| times.iter().copied().min().unwrap_or_default());
@@ -72,8 +71,8 @@ impl RingSpec {
     }
 }
 
-/// Moves instants, which ascend, apart by at least `least`: those that come too soon after another wait, and
-/// of those that coincide some come earlier.
+/// Moves ascending instants apart by at least `least`: those too soon after another are delayed, and of those that
+/// coincide some are moved earlier.
 fn apart(planned: &[Micros], least: Micros, random: &mut Random) -> Vec<Micros> {
     let mut moved = planned.to_vec();
     for group in moved.chunk_by_mut(|one, next| one == next) {

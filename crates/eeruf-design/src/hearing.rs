@@ -1,21 +1,21 @@
-//! Pairs of sensors that can hear each other from where they stand, straight or off one wall.
+//! Pairs of sensors that can hear each other from where they stand, directly or off one wall.
 
 use core::f64::consts::TAU;
 
 use eeruf_files::Pose;
 use eeruf_modules::{Air, Beam, Module, Piston};
 
-/// Directions and distances at which sound is turned back between two sensors.
+/// Numbers of directions and distances at which a reflection between two sensors is tried.
 const DIRECTIONS: u32 = 180;
 const DISTANCES: u32 = 40;
 /// Least distance, in metres.
 const NEAREST_M: f64 = 0.01;
-/// Amplitude that a narrow panel returns at most, relative to a wall (`docs/explanation/physics.md`).
+/// Greatest amplitude of a narrow panel's echo relative to a wall's (`docs/explanation/physics.md`).
 const LOUDEST_PANEL: f64 = 1.35;
-/// Degrees off the axis are rounded down to whole ones, but for what rounding errors take from a right angle.
+/// Tolerance in degrees: angles off the axis are rounded down, but a right angle with a rounding error stays one.
 const SAME_DEG: f64 = 1e-9;
 
-/// A sensor as others hear it.
+/// A sensor as seen by others.
 struct Heard<'a> {
     at: [f64; 2],
     /// Sine and cosine of its heading.
@@ -24,7 +24,7 @@ struct Heard<'a> {
     absorption_db_per_m: f64,
     /// Amplitude at the threshold of hearing.
     floor: f64,
-    /// The most that leaves or arrives at this many degrees off the axis, or more.
+    /// Greatest share of sound sent or received at this many degrees off the axis or more.
     pattern: Vec<f64>,
 }
 
@@ -51,7 +51,7 @@ impl<'a> Heard<'a> {
         Self { at: [pose.x_m, pose.y_m], heading, module, absorption_db_per_m, floor, pattern }
     }
 
-    /// Share of the sound in the direction of a point, and the distance to it.
+    /// Share of the sound in the direction of a point, and the distance to that point.
     fn towards(&self, point: [f64; 2]) -> (f64, f64) {
         let [east, north] = [point[0] - self.at[0], point[1] - self.at[1]];
         let (sin, cos) = self.heading;
@@ -60,7 +60,7 @@ impl<'a> Heard<'a> {
         (self.pattern[deg as usize], length(ahead, aside))
     }
 
-    /// Returns true if it hears another one whose sound is turned back at this point.
+    /// Returns true if this sensor hears another one whose sound is reflected at a point.
     fn hears(&self, other: &Self, point: [f64; 2], farthest_m: f64) -> bool {
         let ((departs, out_m), (arrives, back_m)) = (other.towards(point), self.towards(point));
         let length_m = out_m + back_m;
@@ -69,7 +69,7 @@ impl<'a> Heard<'a> {
     }
 }
 
-/// The amplitude after this way, relative to that after 1 m without absorption.
+/// The amplitude after this distance, relative to that after 1 m without absorption.
 fn lost(absorption_db_per_m: f64, length_m: f64) -> f64 {
     libm::exp10(-absorption_db_per_m * length_m / 20.0) / length_m
 }
@@ -78,9 +78,9 @@ fn length(x_m: f64, y_m: f64) -> f64 {
     (x_m * x_m + y_m * y_m).sqrt()
 }
 
-/// For each sensor the bit set of those that hear it or that it hears: straight, or off one wall or object as far as
-/// `farthest_m`, however that stands, in a module's strongest fading. They stand on a body, which lets nothing through:
-/// a sensor sends and hears nothing behind it.
+/// For each sensor the bit set of those that hear it or that it hears: directly, or off one wall or object at any angle
+/// up to `farthest_m` away, in a module's strongest fading. The robot's body blocks sound: a sensor sends and hears
+/// nothing behind itself.
 pub(crate) fn hearing(poses: &[Pose], modules: &[Module], air: Air, farthest_m: f64) -> Vec<u64> {
     let sensors: Vec<_> = poses.iter().zip(modules).map(|(pose, module)| Heard::new(pose, module, air)).collect();
     let mut rows = vec![0; sensors.len()];
@@ -122,7 +122,7 @@ mod tests {
     use super::*;
     use crate::RingSpec;
 
-    /// Two sensors on the edge of a robot of this radius, this far apart in heading.
+    /// Two sensors on the edge of a robot of this radius, with headings this far apart.
     fn two(apart_deg: f64, radius_m: f64, modules: [Module; 2]) -> bool {
         let poses: Vec<_> = arc(2, radius_m, 0.0, apart_deg.to_radians()).collect();
         hearing(&poses, &modules, Air::default(), 2.57)[0] != 0

@@ -13,7 +13,7 @@ use serde::Deserialize;
     expecting = "expected \"line\", \"ring\", \"blocks\", or pairs of neighbours such as [[0, 1], [1, 2]]"
 )]
 pub enum LayoutKey {
-    /// No such key: a line.
+    /// No layout given: a line.
     #[default]
     #[serde(skip)]
     Unsaid,
@@ -27,7 +27,7 @@ pub enum LayoutKey {
 #[derive(Clone, Copy, Debug, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum LayoutName {
-    /// The first and the last sensor are no neighbours.
+    /// A line: the first and the last sensor are not neighbours.
     Line,
     /// The sensors form a ring.
     Ring,
@@ -35,7 +35,7 @@ pub enum LayoutName {
     Blocks,
 }
 
-/// A layout with the rows of a graph that it may need.
+/// A layout that owns the rows of its graph, if it needs them.
 #[derive(Clone, Debug)]
 pub struct OwnedLayout {
     name: Option<LayoutName>,
@@ -56,8 +56,8 @@ impl OwnedLayout {
 }
 
 impl OwnedLayout {
-    /// Returns the layout in which only those are neighbours of which these rows say that they hear each other, and the
-    /// pairs that are none now.
+    /// Returns the layout without the neighbours that do not hear each other according to these rows, and the pairs
+    /// that were removed.
     pub(crate) fn of_those_that_hear(self, hearing: &[u64]) -> (Self, Vec<(usize, usize)>) {
         let sensors = hearing.len();
         let rows = self.layout().rows(sensors);
@@ -79,7 +79,7 @@ impl OwnedLayout {
 }
 
 impl LayoutKey {
-    /// Returns true if its pairs follow from a number of neighbours.
+    /// Returns true if its pairs depend on the number of neighbours.
     pub(crate) fn counts_neighbours(&self) -> bool {
         !matches!(self, Self::Pairs(_))
     }

@@ -85,7 +85,7 @@ pub use {
     way::{How, Way},
 };
 
-/// The listing of the crate's README compiles and holds.
+/// Doctest of the crate's README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -1,15 +1,15 @@
 //! The shortest period of a ring that moves, whose `t_delta` depends on the schedule.
 //!
 //! From one firing of a sensor to its next, `dt` later, a good reading changes by up to `2 v dt / c`, and the longest
-//! `dt` of a schedule is `T_p + max |d|`. So a longer period asks for a larger separation, and a schedule for one
-//! period need not serve at a longer one. A refutation covers a *region* of periods and of `max |d|`:
+//! `dt` of a schedule is `T_p + max |d|`. So a longer period needs a larger separation, and a schedule for one period
+//! need not serve at a longer one. A refutation covers a *region* of periods and of `max |d|`:
 //!
 //! - every schedule in it needs the `t_delta` of its shortest period and its smallest `max |d|` at least;
 //! - every schedule in it, run at the longest period, leaves each sensor the longest period less the largest `max |d|`
 //!   between two firings.
 //!
-//! The second is a refire time, so the searches for rings that stand decide a region. All `|d|` lie a separation
-//! apart, which bounds `max |d|` from below and so gives the least `t_delta` of a period.
+//! The second is a refire time, so the searches for rings that stand decide a region. All `|d|` lie a separation apart,
+//! which bounds `max |d|` from below and so gives the least `t_delta` of a period.
 
 use eeruf_core::Micros;
 use eeruf_core::search::{Control, Found, Outcome, SearchError};
@@ -20,10 +20,10 @@ use crate::find::{NoDesign, RingDesign};
 use crate::ring::RingSpec;
 use crate::shortest::{Effort, FoundPeriod, SPARE_BUDGET, shortest};
 
-/// A `t_delta` from which on not even a second of silence between two firings would be enough.
+/// A `t_delta` so large that not even a second of silence between two firings would suffice.
 const TOO_MUCH: Micros = Micros::from_millis(1000);
 
-/// Periods and values of `max |d|` of schedules, in ticks: the least and the most of each.
+/// A region of schedules: least and greatest period and `max |d|`, in ticks.
 #[derive(Clone, Copy, Debug)]
 struct Region {
     periods: (u32, u32),
@@ -38,13 +38,13 @@ pub(crate) struct Moving<'s> {
 }
 
 impl RingSpec {
-    /// Returns what `t_delta` must cover with this schedule: jitter, and `2 v dt / c` for the longest `dt` between two
-    /// firings.
+    /// Returns the change that `t_delta` must cover with this schedule: jitter plus `2 v dt / c` for the longest `dt`
+    /// between two firings.
     pub fn t_delta_needed(&self, schedule: &AnySchedule) -> Micros {
         self.t_delta_over(u64::from(schedule.max_refire().as_micros()))
     }
 
-    /// The `t_delta` that covers jitter and the motion of this many microseconds.
+    /// The `t_delta` that covers jitter and the robot's motion over this many microseconds.
     fn t_delta_over(&self, us: u64) -> Micros {
         let change = 2 * u64::from(self.speed_mm_s.unwrap_or(0)) * us;
         let change = change.div_ceil(u64::from(self.c.mm_per_s()).max(1));
@@ -56,13 +56,12 @@ impl RingSpec {
         Moving::new(self, *search).shortest(control)
     }
 
-    /// Returns true if the schedule keeps all needs, with the `t_delta` that its own longest time between two firings
-    /// asks for.
+    /// Returns true if the schedule keeps all needs, with the `t_delta` for its own longest time between two firings.
     pub(crate) fn serves(&self, schedule: &AnySchedule) -> bool {
         schedule.verify(&self.covering(self.t_delta_needed(schedule)).problem().requirements).ok()
     }
 
-    /// Returns the ring where no sensor fires again before `least`.
+    /// Returns the ring with a least refire time of `least` for every sensor.
     fn refiring_after(&self, least: Micros) -> Self {
         match &self.uneven {
             Some(uneven) => {
@@ -236,7 +235,7 @@ impl<'s> Moving<'s> {
         Ok(shortest)
     }
 
-    /// A schedule that serves: each next one is for the `t_delta` that the last one needs.
+    /// A schedule that serves: each next one is searched for with the `t_delta` that the last one needs.
     fn climb(&mut self, lower: &FoundPeriod, control: &mut impl Control) -> Result<Option<AnySchedule>, SearchError> {
         let mut schedule = lower.schedule;
         while !self.spec.serves(&schedule) {
@@ -249,8 +248,8 @@ impl<'s> Moving<'s> {
         Ok(Some(schedule))
     }
 
-    /// Looks for schedules with periods from `least` to below `end`, that of `best` if there is one: the shortest, the
-    /// bound below which there is none, and why.
+    /// Looks for schedules with periods from `least` to below `end`, or below that of `best` if given. Returns the
+    /// shortest, the bound below which there is none, and the reason.
     fn between(
         &mut self,
         least: u32,

@@ -1,6 +1,6 @@
-//! Signs that a ring file's numbers are in other units than its keys say. Two that agree refuse the ring before
-//! anything is said to be proven; each alone may be meant: a front and a rear module hear nothing of each other, a car
-//! is large.
+//! Signs that a ring file's numbers are in other units than its keys say. If two signs agree, the ring is refused
+//! before anything is called proven. A single sign may be intended: a front and a rear module do not hear each other, a
+//! car is large.
 
 use core::f64::consts::TAU;
 
@@ -13,9 +13,9 @@ use crate::ring::{RingFile, RingSpec};
 
 /// Distance from the robot's middle, in metres, beyond which a sensor is a sign of other units.
 const LARGE_M: f64 = 5.0;
-/// A module that is to see this many times as far as it does.
+/// Ratio of required to possible range from which on a module's range is a sign of other units.
 const FARTHER: f64 = 2.5;
-/// The time in which sound goes to a wall 0.1 m away and back: a window that ends before sees nothing.
+/// The echo time of a wall 0.1 m away: a sensor with a shorter window sees nothing.
 const SEES_NOTHING: Micros = Micros::new(600);
 
 /// Refuses the ring if two signs agree.
@@ -30,7 +30,7 @@ pub(crate) fn check(file: &RingFile, spec: &RingSpec) -> Result<(), String> {
 
 type Signs = (Vec<String>, &'static str);
 
-/// Collects the signs that are there.
+/// Collects the signs.
 fn signs<const N: usize>(of: [(bool, String); N]) -> Vec<String> {
     of.into_iter().filter_map(|(is_there, sign)| is_there.then_some(sign)).collect()
 }

@@ -1,4 +1,4 @@
-//! Questions beside the shortest period: what fits into a given one, and what each need costs.
+//! Further questions: whether a schedule fits into a given period, and the cost of each need.
 
 use eeruf_core::Micros;
 use eeruf_core::search::{Control, Outcome, SearchError};
@@ -9,15 +9,14 @@ use crate::moving::Moving;
 use crate::ring::RingSpec;
 use crate::shortest::Effort;
 
-/// The answer to which `t_delta` fits into a period.
+/// The answer to the question which `t_delta` fits into a period.
 #[derive(Clone, Debug)]
 pub struct Fit {
     /// A schedule of that period: one that meets the ring's needs, or else the one with the largest `t_delta`.
     pub schedule: Option<AnySchedule>,
     /// The ring with the `t_delta` that the schedule needs.
     pub spec: RingSpec,
-    /// The largest `t_delta` found; of the sensor with the largest, where sensors have their own and each grows by the
-    /// same.
+    /// The largest `t_delta` found; if sensors have their own, each grows by the same, and this is the largest.
     pub t_delta: Option<Micros>,
     /// Proven bound of `t_delta` with that period; `None` if none meets the other needs, or if it is unknown.
     pub bound: Option<Micros>,
@@ -32,7 +31,7 @@ pub struct Fit {
 /// A need that a curve varies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Need {
-    /// `t_delta`, without what motion adds.
+    /// `t_delta`, without the part for motion.
     TDelta,
     /// Listening time.
     Range,
@@ -45,7 +44,7 @@ pub enum Need {
 pub struct CurvePoint {
     /// The need in tenths of the ring's own.
     pub tenths: u32,
-    /// The value; the largest where sensors have their own.
+    /// The value; the largest if sensors have their own.
     pub value: Micros,
     /// The shortest period found; `None` if there is no schedule, as for a robot that is too fast.
     pub period: Option<Micros>,
@@ -61,7 +60,7 @@ pub const CURVE_POINTS: u32 = 20;
 pub const CURVE_BUDGET: u64 = 20_000;
 
 impl RingSpec {
-    /// Finds what fits into a period: whether the ring's needs do, and the largest `t_delta`.
+    /// Decides if a schedule of this period meets the ring's needs, and finds the largest `t_delta` that fits.
     ///
     /// # Errors
     /// [`SearchError`] for a period that is no whole number of ticks, and as for [`shortest`](Self::shortest).
@@ -142,7 +141,7 @@ impl RingSpec {
         Ok(points)
     }
 
-    /// The ring with some tenths of one need, and the need's value.
+    /// The ring with one need set to some tenths of its value, and that value.
     fn with(&self, need: Need, tenths: u32) -> (Self, Micros) {
         let part = |time: Micros| {
             let us = u64::from(time.as_micros()) * u64::from(tenths);

@@ -1,4 +1,4 @@
-//! Ring files read: what they say, if their numbers are in the units that their keys name.
+//! Reads ring files, and refuses them if their numbers are in other units than their keys say.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use eeruf_files::{FileError, RobotRing, build};
 use crate::plausible;
 use crate::ring::{RingFile, RingSpec};
 
-/// The ring of this file, or of none.
+/// The checked ring of a file, or of a text without a file.
 fn checked(ring: &RingFile, file: Option<&Path>) -> Result<RingSpec, String> {
     let spec = ring.spec(file)?;
     plausible::check(ring, &spec).map(|()| spec)
@@ -22,7 +22,7 @@ impl RingSpec {
         build(text, |ring: RingFile| checked(&ring, None))
     }
 
-    /// Reads the text of this ring file. A URDF that it names is looked for beside it.
+    /// Reads the text of a ring file at this path. A URDF that it names is looked for beside it.
     ///
     /// # Errors
     /// The first thing wrong with it, in the file.

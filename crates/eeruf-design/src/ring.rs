@@ -1,4 +1,4 @@
-//! Ring files: what a designer knows of a ring, turned into what a schedule must meet.
+//! Ring files: a designer's description of a ring, turned into requirements on a schedule.
 
 use std::path::Path;
 
@@ -18,11 +18,11 @@ use crate::uneven::OwnedUneven;
 /// Repeatability of readings of one wall on a robot that stands, for a file that names its modules and no jitter: a
 /// choice.
 const USUAL_JITTER_US: u32 = 100;
-/// Walls up to here make neighbours hear each other, for a file that names its modules and no interval: the paper's 15
-/// ms between neighbours.
+/// Distance in metres up to which walls make neighbours hear each other, for a file that names its modules and no
+/// interval: the paper's 15 ms between neighbours.
 const USUAL_CROSSTALK_RANGE_M: f64 = 2.57;
 
-/// The longest that a ring takes sound to be audible, 67 s.
+/// The longest time for which a ring can take sound to be audible, 67 s.
 const MOST_AUDIBLE_US: u32 = 1 << 26;
 
 const fn one_millisecond() -> u32 {
@@ -40,7 +40,7 @@ pub(crate) struct PlaceFile {
     pub(crate) heading_deg: f64,
 }
 
-/// A ring file for `design`: times in microseconds, or what a designer knows instead of them.
+/// A ring file for `design`: times in microseconds, or the designer's figures that replace them.
 #[derive(Clone, Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct RingFile {
@@ -51,28 +51,28 @@ pub(crate) struct RingFile {
     layout: LayoutKey,
     #[serde(default = "one_millisecond")]
     tick_us: u32,
-    /// Rejection of a sensor's own echo from the period before; by default where modules are named, which hear farther
-    /// than they see.
+    /// Rejection of a sensor's own echo from the period before; by default if modules are named, since they hear
+    /// farther than they see.
     stale_echo: Option<bool>,
-    /// The modules: range and rest of each, where the file does not say otherwise.
+    /// The modules: they give range and rest of each sensor unless the file does.
     module: Option<ModulesFile>,
-    /// `T_delta` itself, or the sensor's repeatability with jitter, and how fast the robot moves.
+    /// `T_delta` itself, or the sensor's jitter and the robot's speed.
     pub(crate) t_delta_us: Option<Each<u32>>,
     pub(crate) jitter_us: Option<Each<u32>>,
     speed_m_s: Option<f64>,
-    /// The interval itself, or how far walls may be from which neighbours hear each other.
+    /// The interval itself, or the distance of walls up to which neighbours hear each other.
     min_interval_us: Option<u32>,
     crosstalk_range_m: Option<f64>,
-    /// The window itself, or the range to see, and how soon a sensor may be triggered again.
+    /// The window itself, or the range to see, and the least time between triggers.
     pub(crate) window_us: Option<Each<u32>>,
     pub(crate) max_range_m: Option<Each<f64>>,
     pub(crate) retrigger_us: Option<Each<u32>>,
-    /// The time that the controller needs for one firing; no two are closer.
+    /// The time that the controller needs for one firing; firings are at least this far apart.
     handling_us: Option<u32>,
-    /// P, where it is less than `T_delta`, and R, where it is not the module's.
+    /// P, if it is less than `T_delta`, and R, if it is not the module's.
     path_change_us: Option<u32>,
     audible_us: Option<u32>,
-    /// Other robots that send sound; by default there may be some.
+    /// True if other robots may send sound, which is the default.
     others: Option<bool>,
     /// Rate at which the robot turns on the spot.
     turn_deg_s: Option<f64>,
@@ -108,51 +108,50 @@ pub struct RingSpec {
     pub layout: OwnedLayout,
     /// Number of adjacent sensors that must not fire close together.
     pub neighbours: u8,
-    /// Pairs that would be neighbours by their number, and are none: they do not hear each other where they stand.
+    /// Pairs that the number of neighbours includes but that do not hear each other where they stand.
     pub not_neighbours: Vec<(usize, usize)>,
     /// The least time between the firings of two neighbours (Sec. 3.1 c).
     pub min_interval: Micros,
-    /// `T_wind`: how long a sensor listens; the longest where sensors have their own.
+    /// `T_wind`, the listening time of a sensor; the longest if sensors have their own.
     pub window: Micros,
-    /// The range to see as an echo time, without what only keeps a sensor from being triggered again; the longest where
-    /// sensors have their own.
+    /// The range to see, as an echo time and without the rest between triggers; the longest if sensors have their own.
     pub listening: Micros,
-    /// True if that range is the modules' own, and not the file's.
+    /// True if that range comes from the modules, not from the file.
     pub sees_by_module: bool,
-    /// Least time between two triggers of sensors that are all alike; zero where they have their own.
+    /// Least time between two triggers, if all sensors are alike; zero if they have their own.
     pub retrigger: Micros,
     /// True if a sensor's own echo from the period before must be rejected too.
     pub stale_echo: bool,
-    /// True if only the modules ask for that. Linear congruences, which do not move a sensor's own sound, do without.
+    /// True if only the modules require that.
     pub stale_echo_by_module: bool,
     /// The speed of sound.
     pub c: SpeedOfSound,
-    /// The change that `t_delta` must cover on a robot that stands; the largest where sensors have their own.
+    /// The change that `t_delta` must cover on a robot that stands; the largest if sensors have their own.
     pub t_delta: Micros,
     /// Speed of the robot, in mm/s, if `t_delta` must cover that too.
     pub speed_mm_s: Option<u32>,
-    /// The time that the controller needs for one firing: it gives two that are closer than this one after the other.
+    /// The time that the controller needs for one firing; it makes closer firings one after the other.
     pub handling: Micros,
     /// P: the largest change of a foreign sound's path from one reading to the next on a robot that
     /// stands; `None` for `t_delta`.
     pub path_change: Option<Micros>,
-    /// R: how long sound is audible, where the file says it.
+    /// R: how long sound is audible, if the file gives it.
     pub audible: Option<Micros>,
     /// True if other robots may be about, whose firings are unknown.
     pub others: bool,
     /// True if the file says that other robots are near.
     pub meets_others: bool,
-    /// The rate at which the robot turns on the spot, in degrees a second, where the file says it.
+    /// The rate at which the robot turns on the spot, in degrees a second, if the file gives it.
     pub turn_deg_s: Option<f64>,
-    /// The module of each sensor, where the file names them; it rests for as long as the file says.
+    /// The module of each sensor, if the file names them, with the file's rest.
     pub modules: Vec<Module>,
-    /// Position of each sensor on the robot, if the file says it.
+    /// Place of each sensor on the robot, if the file gives it.
     pub places: Places,
     /// Needs of single sensors and pairs, where they are not all alike.
     pub uneven: Option<OwnedUneven>,
 }
 
-/// A figure of modules, one for all or one for each.
+/// A figure of the modules, one for all or one for each.
 fn each<T>(modules: &ModulesFile, figure: impl Fn(&Module) -> T) -> Each<T> {
     match modules {
         ModulesFile::All(module) => Each::All(figure(module)),
@@ -161,7 +160,7 @@ fn each<T>(modules: &ModulesFile, figure: impl Fn(&Module) -> T) -> Each<T> {
 }
 
 impl RingSpec {
-    /// Returns the ring where `t_delta` must cover this much; where sensors have their own, each as much more.
+    /// Returns the ring with a `t_delta` that covers this much; if sensors have their own, each grows by the same.
     #[must_use]
     pub fn covering(&self, t_delta: Micros) -> Self {
         let more = t_delta.saturating_sub(self.t_delta);
@@ -186,7 +185,7 @@ impl RingSpec {
         PeriodProblem { sensors: self.sensors, requirements, tick: self.tick }
     }
 
-    /// Requirements as a table of two phases hands them to the ring that fires by it, which allows for P.
+    /// Requirements in the form that a table of two phases passes to its ring, with P included.
     pub fn table_requirements(&self) -> Requirements<'_> {
         let requirements = self.problem().requirements;
         let more = |path_change: Micros| path_change.saturating_add(Micros::new(1));
@@ -194,7 +193,7 @@ impl RingSpec {
         Requirements { criterion, ..requirements }
     }
 
-    /// The ring as scenes take it.
+    /// The ring in the form that scenes take.
     pub fn robot_ring(&self) -> RobotRing {
         let requirements = self.problem().requirements;
         let limits = (0..self.sensors).map(|sensor| SensorLimits {
@@ -218,8 +217,8 @@ impl RingSpec {
 }
 
 impl RingFile {
-    /// The layout, less the pairs that do not hear each other off walls as far as `crosstalk_m`, where the file names
-    /// modules and their places. A ring then stands all round unless it says otherwise: who hears whom is known.
+    /// The layout, less the pairs that do not hear each other off walls up to `crosstalk_m` away, if the file names
+    /// modules and their places. The default layout is then a ring, since it is known which sensors hear each other.
     fn neighbours_by_places(
         &self,
         poses: &[Pose],
@@ -238,7 +237,7 @@ impl RingFile {
         Ok(widest.of_those_that_hear(&hearing(poses, modules, air, crosstalk_m)))
     }
 
-    /// Requirements of the ring in this file, or in none: the first thing wrong is an error.
+    /// Requirements of this ring file, or of a text without a file, or the first error.
     pub(crate) fn spec(&self, file: Option<&Path>) -> Result<RingSpec, String> {
         sensors_in_range(self.sensors)?;
         neighbours_in_range(self.neighbours)?;

@@ -1,4 +1,4 @@
-//! A ring file's ways of firing, judged in rooms: what the program, the page and Python print.
+//! A ring file's ways of firing, judged in rooms, as the program, the page and Python print them.
 
 use core::f64::consts::TAU;
 
@@ -20,12 +20,12 @@ use crate::ring::RingSpec;
 use crate::shortest::Effort;
 use crate::way::Way;
 
-/// Radius of a ring that the file has no places for, in metres: a choice, that of a small robot.
+/// Radius, in metres, of a ring whose file gives no places: a choice, that of a small robot.
 const RADIUS_M: f64 = 0.2;
-/// Angle between sensors in a line that the file has no places for, in degrees: that of the paper's ring.
+/// Angle, in degrees, between sensors of a line whose file gives no places: that of the paper's ring.
 const SPACING_DEG: f64 = 15.0;
 
-/// The robot of a ring file, and what of it the file does not say.
+/// The robot of a ring file, and the assumptions made about it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RoomRobot {
     /// The robot.
@@ -35,11 +35,11 @@ pub struct RoomRobot {
 }
 
 impl RingSpec {
-    /// Returns the robot. Where the file has no places, a ring stands evenly all round, and a line 15 degrees apart;
-    /// where it names no modules, they are Polaroid 6500.
+    /// Returns the robot. Without places in the file, a ring is evenly spaced all round and a line has 15 degrees
+    /// between sensors; without modules they are Polaroid 6500.
     ///
     /// # Errors
-    /// A layout of pairs without places, which no robot follows from.
+    /// A layout of pairs without places, which does not determine a robot.
     pub fn room_robot(&self) -> Result<RoomRobot, String> {
         let mut assumed = self.places.assumed.clone();
         let mut ring = self.robot_ring();
@@ -71,31 +71,31 @@ impl RingSpec {
     }
 }
 
-/// Ways of firing a ring, judged in rooms, and what the answer depends on.
+/// Ways of firing a ring, judged in rooms, and the assumptions of the answer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RoomsAnswer {
     /// The judgement.
     pub judgement: Judgement,
     /// The names of the groups of rooms, and the number of rooms in each.
     pub groups: Vec<(String, usize)>,
-    /// Assumptions where the ring file is silent, each a sentence without a full stop.
+    /// Assumptions about values that the ring file does not give, each a sentence without a full stop.
     pub assumed: Vec<String>,
     /// The robot's speed in m/s.
     pub speed_m_s: f64,
     /// The largest share of foreign sound that was asked for.
     pub wrong: f64,
-    /// Judgements under other conditions, in a third of the rooms; fewer than three if they were stopped.
+    /// Judgements under other conditions, in a third of the rooms; fewer than three if the judging was stopped.
     pub elsewhere: Vec<(Condition, Judgement)>,
-    /// The ways by the one cost, where it was [asked for](RingSpec::cost_in_rooms).
+    /// The ways compared by cost, if it was [asked for](RingSpec::cost_in_rooms).
     pub by_cost: Option<CostAnswer>,
 }
 
 /// The speed of a robot whose ring file has none, in m/s: a choice.
 const USUAL_SPEED_M_S: f64 = 0.3;
-/// One room in this number is looked at under the other conditions.
+/// Divisor of the number of rooms under the other conditions.
 const LESS_ELSEWHERE: usize = 3;
 
-/// Nodes for the schedule of two phases that ways are judged by.
+/// Budget of nodes for the schedule of two phases in the judgement.
 const STUDY_BUDGET: u64 = 200_000;
 
 impl RingSpec {
@@ -104,7 +104,7 @@ impl RingSpec {
         self.speed_mm_s.filter(|&mm| mm > 0).map_or(USUAL_SPEED_M_S, |mm| f64::from(mm) / 1e3)
     }
 
-    /// A short schedule of two phases, proven or not, for judging it in rooms; none where there is none.
+    /// A short schedule of two phases, proven or not, for judging it in rooms; `None` if there is none.
     ///
     /// # Errors
     /// As for [`RingSpec::shortest`].
@@ -118,8 +118,8 @@ impl RingSpec {
 
     /// Judges the ways of firing the ring, with the schedule of two phases that was found for it.
     ///
-    /// `keep_going` is called by several threads with the share that is done of the part under way; when its answer is
-    /// `false` the judgement stops.
+    /// Several threads call `keep_going` with the finished share of the current part; if it returns `false`, the
+    /// judgement stops.
     ///
     /// # Errors
     /// A ring without places, no room, and if it was stopped before the first judgement was complete, in words.
@@ -153,7 +153,7 @@ impl RingSpec {
 
 impl RingSpec {
     /// The way of firing the ring that [`judge_in_rooms`](Self::judge_in_rooms) recommends among those that a program
-    /// can have, without a look at other conditions; none if no way can fire it.
+    /// can have, without judging other conditions; `None` if no way can fire it.
     ///
     /// # Errors
     /// As there.
@@ -232,7 +232,7 @@ pub struct RoomsJson<'a> {
     pub recommended: Option<&'static str>,
     /// True if it keeps to the limits in each kind of room.
     pub keeps: bool,
-    /// Assumptions where the ring file is silent.
+    /// Assumptions about values that the ring file does not give.
     pub assumed: &'a [String],
     ways: Vec<WayJson<'a>>,
     elsewhere: Vec<ElsewhereJson<'a>>,
@@ -262,7 +262,7 @@ struct WayJson<'a> {
     rooms: Vec<(&'a str, &'a RoomFigures)>,
 }
 
-/// As an object whose keys keep the order of the rooms.
+/// Serializes an object whose keys keep the order of the rooms.
 fn in_order<S: Serializer>(rooms: &[(&str, &RoomFigures)], serializer: S) -> Result<S::Ok, S::Error> {
     serializer.collect_map(rooms.iter().copied())
 }

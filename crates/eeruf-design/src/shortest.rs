@@ -1,4 +1,4 @@
-//! The shortest period for what a schedule must meet: out of the atlas where it knows it, else by search.
+//! The shortest period for a problem: from the atlas if it is there, otherwise by search.
 
 use eeruf_core::search::{Control, Found, SearchError};
 use eeruf_core::{MAX_SENSORS, Micros};
@@ -15,21 +15,20 @@ pub(crate) const SPARE_BUDGET: u64 = 30_000;
 pub struct Effort {
     /// Largest number of nodes to visit before giving the best schedule so far.
     pub budget: u64,
-    /// True to look for what would make the period shorter.
+    /// True to look for changes that would make the period shorter.
     pub what_if: bool,
-    /// The atlas that may answer where it knows the shortest period: [`atlas::ATLAS`], a part of it, or an empty text
-    /// for none.
+    /// The atlas that may answer: [`atlas::ATLAS`], a part of it, or an empty text for none.
     pub atlas: &'static str,
 }
 
 impl Default for Effort {
-    /// 50 million nodes, no look at what would be shorter; the atlas may answer.
+    /// An effort of 50 million nodes, with the atlas and without looking for changes.
     fn default() -> Self {
         Self { budget: 50_000_000, what_if: false, atlas: atlas::ATLAS }
     }
 }
 
-/// Knowledge of the shortest period.
+/// The shortest period, and the schedule to prefer.
 #[derive(Clone, Debug)]
 pub struct FoundPeriod {
     /// The shortest period, or the best found, with the first schedule that has it.
@@ -40,7 +39,7 @@ pub struct FoundPeriod {
     pub reason: String,
     /// Slack of that schedule, if the period is proven: of those with this period it has the most.
     pub to_spare: Option<ToSpare>,
-    /// True if period and schedule are the atlas's, and nothing was searched.
+    /// True if period and schedule come from the atlas, and nothing was searched.
     pub from_atlas: bool,
     /// Bound of the period by the certificate of the atlas's row.
     pub certified: Option<Micros>,

@@ -1,4 +1,4 @@
-//! Needs of a ring's sensors that are not all alike, as files and callers give them.
+//! Needs of sensors that differ, as files and callers give them.
 
 use eeruf_core::{MAX_SENSORS, Micros, Requirements, Uneven, conditions::RequirementsError};
 
@@ -17,8 +17,8 @@ pub struct OwnedUneven {
 }
 
 impl OwnedUneven {
-    /// Takes what each of this many sensors needs, counted from 0. `t_delta`, `window` and `refire` may be empty: all
-    /// sensors then have what the requirements say.
+    /// Needs of this many sensors, counted from 0. `t_delta`, `window` and `refire` may be empty: all sensors then have
+    /// those of the requirements.
     ///
     /// # Errors
     /// The first invalid thing.
@@ -59,7 +59,7 @@ impl OwnedUneven {
         Uneven { t_delta, window, refire, intervals, shared_lines, together }
     }
 
-    /// Returns the needs with this much more to be covered by every `t_delta`.
+    /// Returns the needs with every `t_delta` increased by this much.
     pub(crate) fn covering(&self, more: Micros) -> Self {
         let t_delta = self.t_delta.iter().map(|t_delta| t_delta.saturating_add(more)).collect();
         Self { t_delta, ..self.clone() }

@@ -10,16 +10,17 @@ use urdf_rs::{Joint, JointType, Robot};
 use crate::limits::number;
 use crate::places::Places;
 
-/// The link that is the robot's base, where there is one of this name (REP 105).
+/// Name of the link that is the robot's base, if there is one (REP 105).
 const BASE: &str = "base_link";
-/// The base's place on the floor (REP 120).
+/// Name of the base's place on the floor (REP 120).
 const FLOOR: &str = "base_footprint";
-/// The steepest that a sensor looks up or down, in degrees; a choice. Its range is 3.4 % longer than seen from above.
+/// The steepest angle at which a sensor may look up or down, in degrees; a choice. Its range is 3.4 % longer than seen
+/// from above.
 const STEEPEST_DEG: f64 = 15.0;
-/// The most links that an error names.
+/// Largest number of links that an error lists.
 const NAMED: usize = 20;
 
-/// A robot, and the file that it is from.
+/// A robot, and the file that describes it.
 struct Urdf<'a> {
     robot: Robot,
     file: &'a Path,
@@ -81,7 +82,7 @@ impl Urdf<'_> {
         self.robot.links.iter().any(|known| known.name == link)
     }
 
-    /// The link that places are seen from: `base_link`, or else the root.
+    /// The link relative to which places are given: `base_link`, or else the root.
     fn base(&self) -> Result<&str, String> {
         if self.has(BASE) {
             return Ok(BASE);
@@ -114,7 +115,7 @@ impl Urdf<'_> {
         (joints, at)
     }
 
-    /// The place of a link as seen from another one, if no joint between them moves.
+    /// The place of a link relative to another one, if no joint between them moves.
     fn place(&self, from: &str, link: &str) -> Result<Isometry3<f64>, String> {
         let ((mut up, from_top), (mut down, top)) = (self.joints_above(from), self.joints_above(link));
         let name = self.file.display();
@@ -156,7 +157,7 @@ mod tests {
     use crate::{RingSpec, RoomsAsked};
     use eeruf_files::emit::Emit as _;
 
-    /// A robot with a mast that turns; its front sensors hang on a bracket, and the left one is turned over.
+    /// A robot with a mast that turns; its front sensors hang on a bracket, and the left one is upside down.
     const ROBOT: &str = r#"<?xml version="1.0"?>
 <robot name="r2">
   <!-- Colours and what only a simulator needs. -->
@@ -208,7 +209,7 @@ mod tests {
     const RING: &str = "sensors = 3\nmodule = \"hc-sr04\"\nlayout = \"line\"\n";
     const LINKS: &str = "urdf = \"robot.urdf\"\nlinks = [\"sonar_left\", \"sonar_right\", \"sonar_rear\"]\n";
 
-    /// A ring file in a folder of its own, beside a robot.
+    /// A ring file in a folder of its own, beside a robot's URDF.
     fn ring(name: &str, ring: &str, robot: &str) -> Result<RingSpec, String> {
         let folder = std::env::temp_dir().join(format!("eeruf-urdf-{}-{name}", std::process::id()));
         std::fs::create_dir_all(&folder).unwrap();

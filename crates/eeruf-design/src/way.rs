@@ -1,4 +1,4 @@
-//! [`Way`]: a way of firing as a program for a board has it.
+//! [`Way`]: a way of firing that a program for a board can use.
 
 use eeruf_core::flow::{InTurn, TurnSettings, Votes};
 use eeruf_core::plan::Plan as _;
@@ -15,18 +15,18 @@ use crate::ring::RingSpec;
 /// [`FlowRing`](eeruf_core::flow::FlowRing).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Way {
-    /// One sensor after the other, each when nothing is heard of the one before; every echo is believed.
+    /// One sensor after the other, each when the sound of the one before has died; every echo is believed.
     Sequential,
-    /// Sensors that are no neighbours together, group after group; every echo is believed.
+    /// Groups of sensors that are not neighbours, group after group; every echo is believed.
     Groups,
-    /// The paper's: a table whose waits alternate between two values.
+    /// The paper's way: a table whose waits alternate between two values.
     TwoPhases,
-    /// One sensor after the other, each with as much quiet as it has needed.
+    /// One sensor after the other, each with only as much quiet as it needs.
     Flow,
 }
 
 impl Way {
-    /// All, the simplest first.
+    /// All ways, the simplest first.
     pub const ALL: [Self; 4] = [Self::Sequential, Self::Groups, Self::TwoPhases, Self::Flow];
 
     /// The name in options and in JSON.
@@ -65,7 +65,7 @@ impl Way {
         }
     }
 
-    /// The one by which a way that is judged in rooms fires; none if no program has it.
+    /// The way of a program that corresponds to one judged in rooms; `None` if there is none.
     pub fn of(way: &RoomWay) -> Option<Self> {
         match (way.method, way.name) {
             (Method::Sequential, _) => Some(Self::Sequential),
@@ -77,16 +77,16 @@ impl Way {
     }
 }
 
-/// A way of firing with its numbers. Sensors count from 0.
+/// A way of firing with its figures. Sensors count from 0.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct How {
     /// The way's name.
     pub way: &'static str,
     /// Description of the way in words.
     pub in_words: String,
-    /// Sensors in the order in which they fire while nothing is heard; none for a table.
+    /// Sensors in the order in which they fire while nothing is heard; `None` for a table.
     pub order: Vec<u8>,
-    /// The least and the most time from a firing to the next, in microseconds; none for a table.
+    /// The least and the greatest time from a firing to the next, in microseconds; `None` for a table.
     pub gaps_us: Option<[u32; 2]>,
     /// Sensors that fire together.
     pub groups: Vec<Vec<u8>>,
@@ -95,7 +95,7 @@ pub struct How {
 }
 
 impl RingSpec {
-    /// Returns how a way that was judged in rooms fires its robot; none for one that no program has.
+    /// Returns the description of a way judged in rooms; `None` for one that no program can use.
     ///
     /// # Errors
     /// As [`fired`](Self::fired).
@@ -131,8 +131,8 @@ impl RingSpec {
         }))
     }
 
-    /// The settings by which its robot, as it was judged in rooms, fires one by one, in groups or by flow, with the
-    /// seed of its dice.
+    /// The settings for firing its robot, as judged in rooms, one by one, in groups or by flow, with this seed of the
+    /// random gaps.
     ///
     /// # Errors
     /// Groups of sensors that are neighbours, or that have groups of their own already, in words.
@@ -154,7 +154,7 @@ impl RingSpec {
         Ok(flow)
     }
 
-    /// Sets of sensors as many apart as neighbours reach, bit x for sensor x.
+    /// Sets of sensors that lie as far apart as neighbours reach, bit x for sensor x.
     fn groups_far_apart(&self, has_own: bool) -> Result<Vec<u64>, String> {
         if has_own {
             return Err(

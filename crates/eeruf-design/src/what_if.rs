@@ -6,7 +6,7 @@ use eeruf_period::PeriodProblem;
 
 use crate::ring::RingSpec;
 
-/// Number of nodes it may cost to find out what one need, relaxed, would bring.
+/// Budget of nodes for the search with one relaxed need.
 const WHAT_IF_BUDGET: u64 = 20_000;
 
 /// The gain from relaxing one need.
@@ -41,8 +41,8 @@ impl RingSpec {
             .collect()
     }
 
-    /// The uneven ring with one need relaxed, and which: of all sensors by a tenth, or a tick if that is more; and
-    /// shared lines.
+    /// The uneven ring with one need relaxed, and its name: a need of all sensors reduced by a tenth (at least a tick),
+    /// or no shared lines.
     fn relaxed(&self) -> Vec<(String, Self)> {
         let Some(uneven) = &self.uneven else { return Vec::new() };
         let less = |time: Micros| less(time, self.tick);
@@ -80,14 +80,14 @@ impl RingSpec {
     }
 }
 
-/// A tenth less, or a tick if that is more, in whole ticks.
+/// The value reduced by a tenth, at least by a tick, in whole ticks.
 fn less(time: Micros, tick: Micros) -> Micros {
     let (us, tick) = (time.as_micros(), tick.as_micros().max(1));
     Micros::new((us - us / 10).min(us.saturating_sub(1)) / tick * tick)
 }
 
-/// The needs of sensors that are alike with one relaxed by a tenth, or by one tick if that is more, or by one
-/// neighbour, and which.
+/// The needs of identical sensors with one relaxed, and its name: reduced by a tenth (at least a tick), or by one
+/// neighbour.
 fn relaxed_alike<'r>(problem: &PeriodProblem<'r>) -> Vec<(String, Requirements<'r>)> {
     let Requirements { t_delta, min_interval, window, layout, .. } = problem.requirements;
     // In whole ticks, as others are rounded up to them.

@@ -1,4 +1,4 @@
-//! The atlas that comes with the crate.
+//! The atlas of this crate.
 #![cfg(feature = "make-atlas")]
 
 #[path = "../../eeruf-period/tests/common/mod.rs"]

@@ -1,4 +1,4 @@
-//! Claims of a search that ends before its proof, for a ring whose robot moves.
+//! Claims of a search that ends before its proof, for a robot that moves.
 
 use eeruf_design::{Effort, NoDesign, RingSpec};
 

@@ -1,4 +1,4 @@
-//! The one cost of ways of firing, under the conditions that a ring's file names.
+//! The cost of ways of firing, under the conditions that a ring file names.
 
 use eeruf_design::{CostAnswer, RingSpec, RoomsAsked};
 

@@ -1,4 +1,4 @@
-//! A ring file of sensors that are not all alike, to the readings of the flow ring that it describes.
+//! A ring file of sensors that differ, and the readings of its flow ring.
 
 use eeruf_core::flow::{BeliefSettings, FlowRing, TurnSettings};
 use eeruf_core::{Instant, Micros, ReadingKind, RingConfig, RingEvent};
@@ -19,7 +19,7 @@ const RING: &str = "
 ";
 const FIRINGS: usize = 60;
 
-/// Before each a wall at 12 ms, beyond the range of two.
+/// Each sensor has a wall at 12 ms, which is beyond the range of two.
 #[test]
 fn ring_file_of_mixed_sensors_fires_by_flow() {
     let spec = RingSpec::from_text(RING).expect("a ring");

@@ -1,4 +1,4 @@
-//! `handling_us`: firings apart by what the controller needs for one, and nothing else given up for it.
+//! `handling_us`: firings far enough apart for the controller, with all other needs kept.
 
 use eeruf_core::{Micros, Phase, Requirements};
 use eeruf_design::{Effort, NoDesign, RingDesign, RingSpec};
@@ -15,7 +15,7 @@ fn ring(sensors: usize, more: &str) -> String {
     )
 }
 
-/// All instants of two periods and of the end between and after them, in order.
+/// All instants of two periods, and the ends of the periods, in order.
 fn instants(design: &RingDesign, sensors: usize) -> Vec<(u32, usize)> {
     let period = design.schedule.period().as_micros();
     let of = |phase, start: u32| {

@@ -11,8 +11,8 @@ fn design(spec: &RingSpec, budget: u64) -> Result<RingDesign, NoDesign> {
     spec.shortest(&Effort { budget, what_if: false, atlas: "" }, &mut ())
 }
 
-/// A tiny ring file at up to 3 m/s, or now and then 40 m/s, where motion asks for several ticks. They are so coarse
-/// that all schedules can be tried.
+/// A tiny ring file at up to 3 m/s, or sometimes 40 m/s, where motion needs several ticks. Ticks are so coarse that all
+/// schedules can be tried.
 fn random_ring(seed: u64) -> String {
     let mut random = Random(seed + 1);
     for _ in 0..10 {
@@ -33,7 +33,7 @@ fn random_ring(seed: u64) -> String {
     )
 }
 
-/// Returns true if some schedule of this period, in ticks, serves at the `t_delta` that it needs itself.
+/// Returns true if some schedule of this period, in ticks, serves at the `t_delta` that it needs.
 fn feasible(spec: &RingSpec, period: u32) -> bool {
     let tick = i64::from(spec.tick.as_micros());
     let pairs: Vec<(i64, i64)> =
@@ -67,7 +67,7 @@ fn last_fits(spec: &RingSpec, period: i64, fire: &[(i64, i64)]) -> bool {
         })
 }
 
-/// Returns true if all |d| are as far apart as the longest time between two firings asks for.
+/// Returns true if all |d| are as far apart as the longest time between two firings requires.
 fn keeps_separations(spec: &RingSpec, period: i64, fire: &[(i64, i64)]) -> bool {
     let change = |x: usize| (fire[x].0 - fire[x].1).abs();
     let longest = period + (0..spec.sensors).map(change).max().unwrap_or(0);

@@ -1,4 +1,4 @@
-//! Limits per sensor, several echoes and adaptation, two by two, from ring file to simulated readings.
+//! Pairs of features (limits of single sensors, several echoes, adaptation), from ring file to simulated readings.
 
 use std::f64::consts::TAU;
 
@@ -13,8 +13,8 @@ fn spec(text: &str) -> RingSpec {
     RingSpec::from_text(text).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// The robot of a ring file with the schedule of two phases that is found for it, in a corridor of 3 m with noise from
-/// outside, `bursts_per_s`; without any there are no walls either.
+/// The robot of a ring file with the schedule of two phases found for it, in a corridor 3 m wide with external noise,
+/// `bursts_per_s`; if that is 0, there are no walls either.
 fn corridor(spec: &RingSpec, bursts_per_s: f64) -> World {
     let circle = Robot::ring(Pose::identity(), spec.sensors, TAU / spec.sensors as f64, 0.2, Transducer::HC_SR04);
     let of_layout = || Robot::of_ring(&spec.robot_ring(), Pose::identity(), Some(circle.sensors)).expect("a robot");
@@ -40,8 +40,8 @@ fn last_period(readings: &Readings) -> f64 {
     last.windows(2).map(|pair| 1e6 * (pair[1] - pair[0])).fold(0.0, f64::max)
 }
 
-/// Each sensor hears as far as its own window; enough is accepted, and no more than one in `of` is foreign: how much is
-/// hangs, between two walls, on which of the schedules that are as good the search takes.
+/// Checks that each sensor hears as far as its own window, that enough is accepted, and that at most one reading in
+/// `of` is foreign. Between two walls the share depends on which of several equal schedules the search takes.
 fn are_right(spec: &RingSpec, readings: &Readings, of: usize) {
     let requirements = spec.problem().requirements;
     for k in 0..readings.len() {
@@ -64,7 +64,7 @@ fn accepted(readings: &Readings) -> f64 {
     (0..readings.len()).filter(|&k| readings.is_accepted(k)).count() as f64 / readings.len() as f64
 }
 
-/// Noise makes the ring slower by as much as the last rung of its ladder, and no less is right.
+/// Checks that noise slows the ring down to the last rung of its ladder, and that no less is right.
 fn slows_down(spec: &RingSpec, noisy: &Readings, calm: &Readings, period: Micros, of: usize) {
     let period = f64::from(period.as_micros());
     let (slow, fast) = (last_period(noisy) / period, last_period(calm) / period);

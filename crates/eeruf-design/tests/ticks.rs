@@ -1,4 +1,4 @@
-//! Claims about finer ticks, against searches in ticks of a tenth.
+//! Claims about finer ticks, checked by searches in ticks of a tenth.
 
 #[path = "../../eeruf-period/tests/common/mod.rs"]
 mod common;

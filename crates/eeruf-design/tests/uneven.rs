@@ -1,4 +1,4 @@
-//! Ring files of sensors that are not all alike: what they ask for, what is wrong with them, and their answers.
+//! Ring files of sensors that differ: their requirements, their errors and their answers.
 
 #[path = "../../eeruf-period/tests/common/mod.rs"]
 mod common;
@@ -17,7 +17,7 @@ fn design(spec: &RingSpec) -> RingDesign {
     found.expect("there is a schedule")
 }
 
-/// Three of the rings that people have: `rings/`.
+/// Three realistic rings of `rings/`.
 fn rings() -> [(&'static str, &'static str); 3] {
     [
         ("car-12", include_str!("../../../rings/car-12.toml")),

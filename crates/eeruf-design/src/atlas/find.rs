@@ -1,4 +1,4 @@
-//! The atlas that comes with this crate, and how a ring is looked up in it.
+//! The atlas of this crate, and the lookup of a ring in it.
 
 use eeruf_files::AnySchedule;
 use eeruf_period::PeriodProblem;
@@ -6,17 +6,17 @@ use eeruf_period::PeriodProblem;
 use super::rings::Ring;
 use super::row::Row;
 
-/// The atlas that comes with this crate: a line for each ring.
+/// The atlas of this crate: a line for each ring.
 #[cfg(feature = "atlas")]
 pub const ATLAS: &str = include_str!("atlas.txt");
-/// Without the feature `atlas` there is none.
+/// An empty atlas, without the feature `atlas`.
 #[cfg(not(feature = "atlas"))]
 pub const ATLAS: &str = "";
 
-/// The proven row of a problem's ring in an atlas such as [`ATLAS`], and its schedule in the problem's ticks,
-/// which keeps the requirements.
+/// The proven row of a problem's ring in an atlas such as [`ATLAS`], and its schedule in the problem's ticks, which
+/// keeps the requirements.
 ///
-/// A schedule of the atlas that the verifier refuses is as good as none.
+/// A schedule of the atlas that the verifier refuses counts as absent.
 #[must_use]
 pub fn answer(atlas: &str, problem: &PeriodProblem<'_>) -> Option<(Row, AnySchedule)> {
     let begins = format!("{} ", Ring::of(problem)?);

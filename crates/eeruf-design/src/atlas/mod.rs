@@ -1,8 +1,8 @@
 //! The atlas: rings whose shortest period is known, each with its schedule.
 //!
-//! A text with a line for each ring, in whole ticks, so that it serves for every tick: rings are the same if their
-//! needs are as many ticks. `rings` says which rings it holds, `row` is a line, and `find` looks a ring up;
-//! `atlas_making` searches (feature `make-atlas`).
+//! It is a text with a line for each ring, in whole ticks, so that it serves for every tick: two rings are the same if
+//! their needs in ticks are equal. `rings` lists its rings, `row` is a line, and `find` looks a ring up; `atlas_making`
+//! searches (feature `make-atlas`).
 
 mod find;
 mod rings;

@@ -6,7 +6,7 @@ use core::str::FromStr;
 use eeruf_core::{Layout, MAX_SENSORS, Micros, Requirements};
 use eeruf_period::PeriodProblem;
 
-/// Neighbourhoods.
+/// Which sensors are neighbours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Neighbourhood {
     /// All sensors are neighbours, as in any short line or ring.
@@ -22,7 +22,7 @@ pub enum Neighbourhood {
 pub struct Ring {
     /// Number of sensors.
     pub sensors: u8,
-    /// Neighbourhoods.
+    /// Which sensors are neighbours.
     pub neighbourhood: Neighbourhood,
     /// Least difference of the refire times of any two: the smallest number of ticks above `2 t_delta`.
     pub separation: u32,
@@ -36,15 +36,15 @@ pub struct Ring {
 const MOST_SENSORS: u8 = 32;
 /// Number of adjacent sensors that are neighbours.
 const NEIGHBOURS: core::ops::RangeInclusive<u8> = 2..=6;
-/// Near-identical below 0.5 ms, and the paper's 1 ms, in ticks of 1 ms.
+/// Separations for readings near-identical below 0.5 ms, and below the paper's 1 ms, in ticks of 1 ms.
 const SEPARATIONS: [u32; 2] = [1, 2];
 /// The paper's 15 ms.
 const INTERVAL: u32 = 15;
-/// An HC-SR04 up to 4 m; the paper's 30 ms; an HC-SR04 until it lets go of its line; modules that fire 20 times a
-/// second; Polaroid's and others that see 11 m.
+/// Windows of an HC-SR04 up to 4 m; the paper's 30 ms; an HC-SR04 until it releases its line; modules that fire 20
+/// times a second; Polaroid's and others that see 11 m.
 const WINDOWS: [u32; 5] = [25, 30, 40, 50, 65];
 
-/// All rings of the atlas: those of 2 to 32 sensors, in their order.
+/// All rings of the atlas, in order: those of 2 to 32 sensors.
 #[must_use]
 pub fn all_rings() -> Vec<Ring> {
     let mut rings = Vec::new();
@@ -69,14 +69,14 @@ pub fn all_rings() -> Vec<Ring> {
     rings
 }
 
-/// Returns true if the ring of this number belongs to this one of this many processes, both from 0.
+/// Returns true if the ring of this number belongs to this shard, of this many; both count from 0.
 #[must_use]
 pub fn is_in_shard(number: usize, shard: usize, shards: usize) -> bool {
     number % shards.max(1) == shard
 }
 
 impl Neighbourhood {
-    /// Neighbourhood of this layout, by whatever name it goes; `None` if the atlas has none.
+    /// Neighbourhood of a layout, whatever its name; `None` if the atlas has none.
     #[must_use]
     pub fn of(layout: &Layout<'_>, sensors: u8) -> Option<Self> {
         let count = usize::from(sensors);
@@ -85,7 +85,7 @@ impl Neighbourhood {
         core::iter::once(Self::All).chain(named).find(|candidate| candidate.layout(sensors).rows(count) == rows)
     }
 
-    /// Returns the layout of this many sensors.
+    /// Returns the layout of a ring with this many sensors.
     #[must_use]
     pub fn layout(self, sensors: u8) -> Layout<'static> {
         match self {
@@ -97,7 +97,7 @@ impl Neighbourhood {
 }
 
 impl Ring {
-    /// The ring of a problem; `None` if its sensors are not all alike, or it asks for what no ring of the atlas does.
+    /// The ring of a problem; `None` if its sensors differ, or if its needs are those of no ring of the atlas.
     #[must_use]
     pub fn of(problem: &PeriodProblem<'_>) -> Option<Self> {
         let PeriodProblem { sensors, requirements, tick } = *problem;

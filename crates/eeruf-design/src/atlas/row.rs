@@ -8,32 +8,32 @@ use eeruf_files::AnySchedule;
 
 use super::rings::Ring;
 
-/// Knowledge of a ring. Times are in ticks.
+/// A ring's entry. Times are in ticks.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Row {
     /// The ring.
     pub ring: Ring,
     /// The shortest period, or the shortest found.
     pub period: u32,
-    /// Proven bound of the period: the period itself where it is proven shortest.
+    /// Proven bound of the period; equal to the period if that is proven shortest.
     pub bound: u32,
     /// Bound that a certificate proves.
     pub certified: u32,
-    /// The first 32 digits of the certificate's SHA-256; empty where a part of the atlas leaves them out.
+    /// The first 32 digits of the certificate's SHA-256; empty if this part of the atlas omits them.
     pub hash: String,
-    /// True if it is proven that no schedule of this period has a larger `t_delta`, a larger interval at this
-    /// `t_delta`, a longer refire time at both.
+    /// True if it is proven that no schedule of this period has a larger `t_delta`, a larger interval at that
+    /// `t_delta`, or a longer refire time at both.
     pub preferred: [bool; 3],
     /// Firing times of each sensor in phases a and b.
     pub fire: [Vec<u32>; 2],
 }
 
-/// The digits of firing times: two for each, the higher first.
+/// The digits of firing times, two for each, the higher digit first.
 const DIGITS: &[u8; 64] = b"0123456789ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz-_";
 /// Number of digits of the hash.
 const HASH: usize = 32;
 
-/// The rows of a text, without those that are not whole: a process may have ended while it wrote one.
+/// The complete rows of a text; a process may have been stopped while it wrote one.
 pub fn rows(text: &str) -> impl Iterator<Item = Row> + '_ {
     text.split_inclusive('\n').filter_map(|line| line.strip_suffix('\n')?.parse().ok())
 }

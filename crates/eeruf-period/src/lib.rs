@@ -13,7 +13,7 @@
 //! | say why nothing is shorter | [`ShortestPeriod::reason`] |
 //! | prove it to others | [`PeriodProblem::claim`], [`engine::prove`] |
 //!
-//! How a search ends, who watches it and why it cannot start are [`eeruf_core::search`]'s. The same question has the
+//! The outcome, the watcher and the errors of a search are those of [`eeruf_core::search`]. The same question has the
 //! same answer on each machine: there is no clock, and random numbers come from a fixed seed.
 
 pub mod engine;
@@ -24,7 +24,7 @@ mod reason;
 pub use period_problem::{PeriodProblem, ShortestPeriod, ToSpare};
 pub use random::Random;
 
-/// The listing of the crate's README compiles and holds.
+/// Doctest of the crate's README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -10,7 +10,7 @@ use crate::engine::spare::{Spare, most_to_spare};
 use crate::engine::{Claim, Problem};
 use crate::reason::reason;
 
-/// Needs of a ring whose firing times are free: every sensor fires once per period, whenever it suits all.
+/// Needs of a ring whose firing times are free: every sensor fires once per period, at any tick.
 ///
 /// ```
 /// use eeruf_core::{Micros, Requirements};
@@ -63,7 +63,7 @@ impl ShortestPeriod {
         self.bound == self.period()
     }
 
-    /// Returns the value as a search for any value has it.
+    /// Returns the result in the form of any search.
     #[must_use]
     pub fn found(&self) -> Found<MAX_SENSORS> {
         Found {
@@ -79,13 +79,13 @@ impl ShortestPeriod {
 /// Slack of a schedule beyond its needs, the same for all sensors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ToSpare {
-    /// Growth that every `t_delta` may have; then
+    /// Possible growth of every `t_delta`.
     pub t_delta: Micros,
-    /// by how much every time between two firings, be it an interval or for a shared line; then
+    /// Possible growth of every time between two firings, for intervals and shared lines, after that.
     pub interval: Micros,
-    /// how much later every sensor is triggered again than it asks for.
+    /// Possible growth of every refire time, after that.
     pub refire: Micros,
-    /// True if no schedule of this period has more, of each.
+    /// True if no schedule of this period has more to spare.
     pub proven: [bool; 3],
     /// Nodes visited for the choice.
     pub nodes: u64,
@@ -94,7 +94,7 @@ pub struct ToSpare {
 impl PeriodProblem<'_> {
     /// The shortest period, proven unless `budget` nodes are spent first; then the shortest found.
     ///
-    /// There is always a schedule, since firing one by one meets any needs but those of sensors that fire together.
+    /// There is always a schedule, since firing one by one meets all needs except those of sensors that fire together.
     ///
     /// # Errors
     /// [`SearchError`] for needs that make no sense or are too large to search.
@@ -125,7 +125,7 @@ impl PeriodProblem<'_> {
     }
 
     /// Decides whether some schedule has this period, within `budget` nodes, and counts the nodes visited. Short
-    /// descents go along `guide`, a schedule with another period.
+    /// descents follow `guide`, a schedule with another period.
     ///
     /// # Errors
     /// As for [`shortest`](Self::shortest), and if the period is not a whole number of ticks.
@@ -161,8 +161,8 @@ impl PeriodProblem<'_> {
 
     /// Finds, among the schedules with the period of this one, the one with most to spare: the largest `t_delta`; of
     /// these, the largest intervals; of these, the longest times before a sensor fires again. Each need grows by the
-    /// same for all sensors, and no gain in a later one makes up for a loss in an earlier one. What is not proven
-    /// within `budget` nodes is the best found.
+    /// same for all sensors; earlier needs have priority. If `budget` ends before the proof, the result is the best
+    /// found.
     ///
     /// # Errors
     /// As for [`shortest`](Self::shortest).
@@ -179,8 +179,8 @@ impl PeriodProblem<'_> {
         Ok((self.schedule(period, &spare.fire)?, self.slack(&spare)))
     }
 
-    /// The largest `t_delta` at a given period; those of the requirements are not looked at. The schedule is the one to
-    /// [`prefer`](Self::prefer) then.
+    /// The largest `t_delta` at a given period; that of the requirements is ignored. The schedule is the
+    /// [preferred](Self::prefer) one.
     ///
     /// # Errors
     /// As for [`decide`](Self::decide).
@@ -207,7 +207,7 @@ impl PeriodProblem<'_> {
         Ok(Found { schedule: Some(schedule), value, bound, proven, nodes: nodes + spare.nodes })
     }
 
-    /// The slack of this schedule itself, without a search for one that has more.
+    /// The slack of this schedule, without a search for one that has more.
     #[must_use]
     pub fn spare_of(&self, schedule: &Schedule<MAX_SENSORS>) -> ToSpare {
         let claim = self.claim(schedule, None);
@@ -215,7 +215,7 @@ impl PeriodProblem<'_> {
     }
 
     /// The problem in whole ticks: the separation of a sensor is the smallest number of ticks above twice its
-    /// `t_delta`, windows and gaps are the smallest that are as long. A tick of 0 counts as a microsecond.
+    /// `t_delta`; windows and gaps are rounded up. A tick of 0 counts as a microsecond.
     #[must_use]
     pub fn in_ticks(&self) -> Problem {
         let Self { sensors, requirements, .. } = *self;
@@ -254,7 +254,7 @@ impl PeriodProblem<'_> {
         Claim { problem: self.in_ticks(), period, fire, bound: ticks(bound.unwrap_or_default()).max(1) }
     }
 
-    /// The problem in ticks, if it makes sense and a schedule of it can be stated.
+    /// The problem in ticks, if it is valid and one of its schedules can be stated.
     fn checked(&self) -> Result<Problem, SearchError> {
         if self.requirements.criterion == Criterion::Paper {
             return Err(SearchError::PaperCriterion);
@@ -325,7 +325,7 @@ impl PeriodProblem<'_> {
     }
 }
 
-/// A period at which firing one by one meets all needs, in ticks.
+/// A period, in ticks, at which firing one by one meets all needs.
 fn one_by_one(problem: &Problem) -> u64 {
     let longest = |times: &[u32]| times.iter().map(|&time| u64::from(time)).max().unwrap_or(0);
     let gap = problem.gaps.iter().map(|&(.., x, y)| u64::from(x.max(y))).max().unwrap_or(0);

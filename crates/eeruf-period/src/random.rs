@@ -21,12 +21,12 @@ impl Random {
         Self(mix(seed.wrapping_add(GOLDEN)))
     }
 
-    /// The stream from a raw state of the published generator on, for draws that others must be able to repeat.
+    /// The stream from a raw state of the published generator, for draws that others must be able to repeat.
     pub const fn from_state(state: u64) -> Self {
         Self(state)
     }
 
-    /// The stream that belongs to a key within this one; this one does not advance.
+    /// The stream of a key within this stream, which does not advance.
     #[inline]
     pub const fn of(self, key: u64) -> Self {
         Self(mix(self.0 ^ key.wrapping_add(1).wrapping_mul(GOLDEN)))
@@ -39,7 +39,7 @@ impl Random {
         mix(self.0)
     }
 
-    /// Evenly from `low` to below `high`.
+    /// A number from `low` to below `high`, uniformly.
     #[inline]
     pub const fn between(&mut self, low: f64, high: f64) -> f64 {
         low + (high - low) * ((self.bits() >> 11) as f64 / (1u64 << 53) as f64)

@@ -6,7 +6,7 @@ use crate::engine::Problem;
 use crate::engine::counting::{Bound, strongest};
 use crate::engine::shortest::Shortest;
 
-/// Returns the reason why the period found is not shorter; `time` says how long a number of ticks is.
+/// Returns the reason why the period found is not shorter; `time` converts ticks.
 pub(crate) fn reason(problem: &Problem, found: &Shortest, time: &dyn Fn(u32) -> Micros) -> String {
     if found.bound < found.period {
         return format!(
@@ -34,7 +34,7 @@ pub(crate) fn reason(problem: &Problem, found: &Shortest, time: &dyn Fn(u32) -> 
     }
 }
 
-/// The bound that the period meets.
+/// The reason if the period meets a bound by counting.
 fn by_counting(bound: Bound, time: &dyn Fn(u32) -> Micros) -> String {
     let period = time(bound.period());
     match bound {
@@ -79,7 +79,7 @@ fn by_counting(bound: Bound, time: &dyn Fn(u32) -> Micros) -> String {
     }
 }
 
-/// No bound says so, but no schedule one tick shorter was found in a search of all.
+/// The reason if no bound explains the period, but a full search found no schedule one tick shorter.
 fn in_any_order(counted: Bound, found: &Shortest, time: &dyn Fn(u32) -> Micros) -> String {
     let alone = match counted {
         Bound::Capacity { .. } => "window and separation alone",

@@ -1,5 +1,5 @@
-//! The judge of all rules: for tiny random problems, the period proven shortest is the one that trying all schedules
-//! gives. A rule that refutes too much would prove a longer one.
+//! A test of all rules: for tiny random problems, the proven shortest period equals the one found by trying all
+//! schedules. A rule that refutes too much would prove a longer one.
 
 mod common;
 
@@ -73,7 +73,7 @@ fn the_search_finds_the_period_that_trying_all_schedules_gives() {
     assert!(solved * 3 > cases && hopeless * 10 < cases, "{solved} of {cases} solved, {hopeless} without a schedule");
 }
 
-/// Returns true if some schedule of this period keeps so much more separation, gaps and windows.
+/// Returns true if some schedule of this period has this much slack in separation, gaps and windows.
 fn keeps(problem: &Problem, period: u32, more: [u32; 3]) -> bool {
     let each = |times: &[u32], by: u32| times.iter().map(|time| time + by).collect();
     let gaps = problem.gaps.iter().map(|&(x, y, after_x, after_y)| (x, y, after_x + more[1], after_y + more[1]));

@@ -19,13 +19,14 @@ fn claim(seed: u64, longer: u32) -> Option<Claim> {
     Some(Claim { problem, period, fire, bound: period })
 }
 
-/// Returns true if the claim holds by trying all firing times: the schedule keeps the needs, and no shorter period can.
+/// Returns true if trying all firing times confirms the claim: the schedule keeps the needs, and no shorter period can.
 fn holds(claim: &Claim) -> bool {
     let Claim { problem, bound, .. } = claim;
     claim.check().is_ok() && (1..*bound).all(|period| feasible(problem, period).is_none())
 }
 
-/// The certificate with one to three lines changed: deleted, doubled, swapped, moved, cut, or a number by up to two.
+/// The certificate with one to three lines mutated: deleted, doubled, swapped, moved, cut, or a number changed by up to
+/// two.
 fn mutated(random: &mut Random, certificate: &str) -> String {
     let mut lines: Vec<String> = certificate.split('\n').map(str::to_owned).collect();
     for _ in 0..=random.below(3) {
@@ -94,7 +95,7 @@ fn accepted_claims_are_true_by_nested_loops() {
     assert!(2 * proven > cases && judged > proven, "mutated claims are accepted too");
 }
 
-/// Rules of the checker that refute too much: what is replaced in its text.
+/// Rules of the checker made too strong: the replaced parts of its text.
 const BROKEN: [(&str, &str, &str); 15] = [
     ("closure: a cycle of 0 is refuted", "self.bound(j, i) < 0:", "self.bound(j, i) <= 0:"),
     ("window: a tick more", "period - problem.R[x])", "period - problem.R[x] - 1)"),
@@ -129,7 +130,7 @@ const BROKEN: [(&str, &str, &str); 15] = [
     ("lanes: equal numbers are less", "return (p | self.top) - q &", "return (p | self.top) - q - self.ones &"),
 ];
 
-/// Broken rules of counting and of firings in the order of time.
+/// Mutated rules of counting and of firings in the order of time.
 const BROKEN_IN_TIME: [(&str, &str, &str); 16] = [
     ("sequence: a tick more", "apart + max(windows", "apart + 1 + max(windows"),
     ("one by one: no sensor follows itself", "sum(gap.values()) - again >", "sum(gap.values()) >"),
@@ -178,7 +179,7 @@ fn broken(number: usize, from: &str, to: &str) -> PathBuf {
     file
 }
 
-/// Certificates that a checker's own rules allow for claims, branching on whatever is open; at most this many. `how` is
+/// Certificates that a checker's rules allow for claims, by branching on anything open; at most this many. `how` is
 /// `orders`, or `time` for counting and branchings along time.
 fn proven_by(checker: &Path, name: &str, claims: &[Claim], most: usize, how: &str) -> Vec<String> {
     let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(name);
@@ -200,7 +201,7 @@ fn proven_by(checker: &Path, name: &str, claims: &[Claim], most: usize, how: &st
         .collect()
 }
 
-/// Claims of problems that have a schedule: that no period is below the shortest, or one tick more, which is false.
+/// Claims about problems that have a schedule: that no period is below the shortest, and, falsely, below one tick more.
 fn claims(cases: u64, longer: u32) -> Vec<Claim> {
     (0..cases).filter_map(|seed| claim(seed, longer)).collect()
 }

@@ -1,5 +1,5 @@
-//! Steps of the search to its answers, the same on each machine: written down in `tests/data/period-effort.txt`. A
-//! change that makes it take other steps shows there what it costs or saves. `EERUF_WRITE=1` rewrites the file.
+//! Steps of the search to its answers, the same on each machine: recorded in `tests/data/period-effort.txt`. There a
+//! change of its steps shows what it costs or saves. `EERUF_WRITE=1` rewrites the file.
 
 #[path = "common/alike.rs"]
 mod alike;
@@ -19,7 +19,7 @@ const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/period
 /// The nodes that a question may cost.
 const BUDGET: u64 = 3000;
 
-/// FNV-1a over the times: two schedules of the same sum are the same.
+/// FNV-1a hash of the times, which identifies a schedule.
 fn sum([a, b]: &FiringTimes) -> u32 {
     let add = |sum: u64, time: &u32| (sum ^ u64::from(*time)).wrapping_mul(0x0100_0000_01b3);
     a.iter().chain(b).fold(0xcbf2_9ce4_8422_2325, add) as u32

@@ -1,9 +1,9 @@
 //! A brute force over firing times judges the search: shortest periods, decisions near them and elsewhere, and
 //! preferences, of random rings of up to six sensors that are alike, and 40 ticks.
 //!
-//! It is written from the definition in the documentation of `Problem` and shares nothing with the search. Each
-//! sensor has a set of pairs of firing times that are still open to it. Setting one sensor takes away from the others
-//! what no longer fits; the sensor with the fewest pairs is next.
+//! It is written from the definition in the documentation of `Problem` and shares nothing with the search. Each sensor
+//! has a set of possible pairs of firing times. Placing one sensor removes the pairs of others that no longer fit; the
+//! sensor with the fewest pairs is next.
 //!
 //! `EERUF_BRUTE_FORCE=10000` judges this many problems instead of 200 in each test, and `EERUF_BRUTE_FORCE_SEED` draws
 //! others.
@@ -20,10 +20,10 @@ use eeruf_period::engine::search::{Decided, FiringTimes, Search};
 use eeruf_period::engine::spare::most_to_spare;
 use solver::{MOST_TICKS, Needs, brute_force};
 
-/// Enough nodes for all that is asked here; a search that is broken ends, too.
+/// A budget that suffices for all questions here; a broken search ends, too.
 const BUDGET: u64 = 1_000_000;
 
-/// A line, a ring, blocks, or any graph, with up to five neighbours.
+/// A random line, ring, set of blocks or graph, with up to five neighbours.
 fn conflicts(sensors: usize, random: &mut Random) -> Vec<u64> {
     let (layout, n) = (random.up_to(3), 1 + random.up_to(4) as usize);
     let odds = random.up_to(3);
@@ -78,7 +78,7 @@ fn assert_meets(problem: &Alike<'_>, period: u32, firing: &FiringTimes) {
     assert!(needs(problem, period).met_by(&times(firing)), "{problem:?} at {period}: {:?}", times(firing));
 }
 
-/// Number of questions that were answered, and how many were too large to try, by the number of sensors.
+/// Number of questions answered, and of those too large to try, by the number of sensors.
 #[derive(Default, Debug)]
 struct Tally {
     yes: [u32; 7],
@@ -98,7 +98,7 @@ impl Tally {
         }
     }
 
-    /// Asserts that what was found is right and that nothing was kept back.
+    /// Asserts that the result is right and that nothing was kept back.
     fn assert_decided(&mut self, problem: &Alike<'_>, period: u32) {
         match Search::new(&problem.problem()).decide(period, BUDGET, &mut |_| true) {
             Decided::Found(firing) => {
@@ -110,7 +110,7 @@ impl Tally {
         }
     }
 
-    /// Asserts that enough was answered for each number of sensors, both ways.
+    /// Asserts that enough questions were answered for each number of sensors, with both answers.
     fn assert_enough(&self, both: bool) {
         println!("{self:?}");
         for sensors in 2..=6 {
@@ -213,8 +213,8 @@ fn one_tick_less_of_a_need_is_decided_rightly() {
     tally.assert_enough(true);
 }
 
-/// Returns true if a schedule exists, by trying all times of one sensor after the other and asking for everything at
-/// the end.
+/// Returns true if a schedule exists, by trying all times of one sensor after the other and checking all needs at the
+/// end.
 fn nested_loops(needs: &Needs, times: &mut Vec<(i32, i32)>) -> bool {
     if times.len() == needs.conflicts.len() {
         return needs.met_by(times);

@@ -1,5 +1,5 @@
-//! The search at the edges of what it takes: budgets, a control that stops it, one sensor and sixty-four, ticks that
-//! are too coarse or too fine, bad input.
+//! Limits of the search: budgets, a control that stops it, one and sixty-four sensors, ticks that are too coarse or too
+//! fine, bad input.
 
 #[path = "common/alike.rs"]
 mod alike;
@@ -11,7 +11,7 @@ use eeruf_core::search::{Progress, SearchError};
 use eeruf_core::{Criterion, Layout, Micros, Requirements};
 use eeruf_period::PeriodProblem;
 
-/// Enough nodes for all that is asked here; a search that is broken ends, too.
+/// A budget that suffices for all questions here; a broken search ends, too.
 const BUDGET: u64 = 1_000_000;
 
 const NEEDS: Requirements<'static> = Requirements {

@@ -1,9 +1,9 @@
-//! Beside the shortest period: why it is not shorter, the largest `t_delta` at a given one, and the preferred schedule.
+//! Further questions: why a period is not shorter, the largest `t_delta` at a given period, and the preferred schedule.
 
 use eeruf_core::{Layout, Micros, Requirements};
 use eeruf_period::{PeriodProblem, ToSpare};
 
-/// Enough nodes for all that is asked here; a search that is broken ends, too.
+/// A budget that suffices for all questions here; a broken search ends, too.
 const BUDGET: u64 = 1_000_000;
 
 const fn ms(ms: u32) -> Micros {

@@ -1,4 +1,4 @@
-//! The proven periods of tests/data/shortest-periods.json get certificates, and those are accepted.
+//! Certificates of the proven periods of tests/data/shortest-periods.json, which the checker accepts.
 
 mod common;
 

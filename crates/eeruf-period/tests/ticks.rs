@@ -5,7 +5,7 @@ mod alike;
 
 use alike::{Alike, Layout, assert_serves, conflicts, paper_12};
 
-/// Enough nodes for all that is asked here; a search that is broken ends, too.
+/// A budget that suffices for all questions here; a broken search ends, too.
 const BUDGET: u64 = 1_000_000;
 
 // The half ring of twelve runs at 65 ms and also in microseconds.

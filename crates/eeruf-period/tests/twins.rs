@@ -21,8 +21,8 @@ fn even(layout: &str, sensors: usize, [separation, window, gap]: [u32; 3]) -> Pr
     }
 }
 
-/// Writes a certificate by the rules of the checker alone: what the search concludes beyond them must not make a period
-/// longer. Returns also the search's nodes.
+/// Writes a certificate by the checker's rules alone, since the search's further conclusions must not make a period
+/// longer. Also returns the search's nodes.
 fn certify(name: &str, problem: Problem, budget: usize) -> (String, u64) {
     let found = shortest(&problem, 1_000_000, &mut |_| true).expect("there is a schedule");
     assert_eq!(found.period, found.bound, "{name}: proven");

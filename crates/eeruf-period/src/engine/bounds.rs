@@ -9,30 +9,30 @@ pub(crate) type Bound = i32;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Refuted;
 
-/// The closed matrix of bounds: `at(i, j)` is the least upper bound on `t_j - t_i` that follows. A log of the rows as
-/// they were takes it back to an earlier mark.
+/// The closed matrix of bounds: `at(i, j)` is the least upper bound on `t_j - t_i` that follows. A log of overwritten
+/// rows restores it to an earlier mark.
 #[derive(Clone, Debug)]
 pub(crate) struct Bounds {
     events: usize,
     matrix: Vec<Bound>,
-    /// Room for a row.
+    /// Buffer for a row.
     onward: Vec<Bound>,
-    /// Rows as they were before they changed: the bounds, then the row's number.
+    /// Old contents of changed rows: the bounds, then the row's number.
     log: Vec<Bound>,
-    /// The step in which each row was logged last: once a step is enough.
+    /// The step in which each row was last logged: once a step is enough.
     saved: Vec<u32>,
     step: u32,
-    /// The number of changes of the matrix so far, those taken back among them.
+    /// Number of changes of the matrix so far, including undone ones.
     version: u64,
-    /// The rows that changed since they were last taken, as bits.
+    /// The rows that changed since [`take_changed`](Self::take_changed) returned them, as bits.
     changed: [u64; CHANGED],
 }
 
-/// Words for a bit a row.
+/// Words for one bit for each row.
 const CHANGED: usize = (2 * MAX_SENSORS + 1).div_ceil(64);
 
 impl Bounds {
-    /// Every difference of two of `events` times is at most `widest`.
+    /// A matrix in which every difference of two of `events` times is at most `widest`.
     pub(crate) fn new(events: usize, widest: Bound) -> Self {
         let mut matrix = vec![widest; events * events];
         for i in 0..events {
@@ -51,12 +51,12 @@ impl Bounds {
         self.matrix[i * self.events + j]
     }
 
-    /// A number that no two different matrices of this search have.
+    /// A number that identifies this state of the matrix within the search.
     pub(crate) fn version(&self) -> u64 {
         self.version
     }
 
-    /// A row that changed since it was last taken. At first all have.
+    /// A row that changed since it was last returned. At first all rows count as changed.
     pub(crate) fn take_changed(&mut self) -> Option<usize> {
         let (word, bits) = self.changed.iter_mut().enumerate().find(|(_, bits)| **bits != 0)?;
         let row = 64 * word + bits.trailing_zeros() as usize;
@@ -64,7 +64,7 @@ impl Bounds {
         Some(row)
     }
 
-    /// Begins a step, and returns the mark that [`undo`](Self::undo) goes back to.
+    /// Begins a step, and returns a mark for [`undo`](Self::undo).
     pub(crate) fn mark(&mut self) -> usize {
         self.begin_step();
         self.log.len()
@@ -78,7 +78,7 @@ impl Bounds {
         }
     }
 
-    /// Goes back to the mark. Later marks are void.
+    /// Restores the matrix at the mark. Later marks become invalid.
     pub(crate) fn undo(&mut self, mark: usize) {
         let n = self.events;
         while self.log.len() > mark {
@@ -93,7 +93,7 @@ impl Bounds {
         self.changed = [0; CHANGED];
     }
 
-    /// Learns that `t_j - t_i` is at most `bound`, and closes the matrix again. Returns true if it was news.
+    /// Adds the bound `t_j - t_i <= bound`, and closes the matrix again. Returns true if the bound was new.
     #[inline]
     pub(crate) fn learn(&mut self, i: usize, j: usize, bound: Bound) -> Result<bool, Refuted> {
         if bound >= self.at(i, j) {

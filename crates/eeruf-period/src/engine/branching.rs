@@ -11,18 +11,18 @@ use crate::engine::turns::place;
 pub(crate) enum Branching {
     /// In this phase x fires before y, or after it.
     Order(usize, usize, usize),
-    /// `d_x` is 0 or positive, or it is negative.
+    /// `d_x >= 0`, or `d_x < 0`.
     Sign(usize),
     /// `|d_x|` is smaller than `|d_y|`, or larger.
     Rank(usize, usize),
-    /// `|d_x|` is at most this many ticks, or more.
+    /// `|d_x|` is at most this many ticks, or it is more.
     Split(usize, u32),
-    /// Each of those that have not fired in this phase fires next; the first of them in case 0.
+    /// Which of the sensors that have not fired in this phase fires next; case 0 is the first of them.
     Next,
 }
 
 impl Branching {
-    /// Assumes the case of this number and propagates.
+    /// Assumes a case by its number and propagates.
     pub(crate) fn assume(&self, case: usize, state: &mut State, merged: &Merged) -> Result<(), Refuted> {
         match *self {
             Self::Order(phase, x, y) => {

@@ -43,7 +43,7 @@ pub(crate) struct Classes {
     pub(crate) kind: Kind,
 }
 
-/// Place where the sensors stand.
+/// The arrangement of the sensors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Line,
@@ -52,7 +52,7 @@ pub(crate) enum Kind {
     Cliques(i32),
 }
 
-/// The places tried before giving up on a permutation, which then says nothing.
+/// Number of places tried before a permutation is given up, which then proves nothing.
 const STEPS: u32 = 1 << 15;
 
 impl Classes {
@@ -72,7 +72,7 @@ impl Classes {
         (n >= 2 && even.window >= even.interval).then_some(Self { n: n as i32, kind })
     }
 
-    /// The number of sensors that the classes must have room for.
+    /// The number of sensors for which the classes must have room.
     pub(crate) fn sensors(&self, even: &Even) -> i32 {
         if let Kind::Cliques(cliques) = self.kind { self.n * cliques } else { even.count as i32 }
     }
@@ -88,7 +88,7 @@ impl Classes {
         yes
     }
 
-    /// Returns true if too few |d| fit into the classes at this period, at least n I and less than (n + 1) I.
+    /// Returns true if too few |d| fit into the classes at this period, which is at least n I and less than (n + 1) I.
     pub(crate) fn excludes(&self, even: &Even, period: i32) -> bool {
         let (n, count, separation) = (self.n, even.count as i32, even.separation);
         let spare = period - n * even.interval;
@@ -117,7 +117,8 @@ impl Classes {
     }
 }
 
-/// The sensors that share a place's move: `each` sensors or, of `more` places, one more; and in a ring `alike` places.
+/// The number of sensors that share a place's move: `each`, or one more for `more` of the places; in a ring `alike`
+/// places move alike.
 struct Moves {
     each: i32,
     more: i32,
@@ -125,7 +126,8 @@ struct Moves {
 }
 
 impl Moves {
-    /// Sensor x moves as far as x + n, and so as x + g with the greatest common divisor g of n and the number of all.
+    /// The moves of a ring: sensor x moves as far as x + n, and so as x + g, with the greatest common divisor g of n
+    /// and the number of sensors.
     fn of_ring(n: i32, count: i32) -> Self {
         let (mut divisor, mut rest) = (n, count);
         while rest > 0 {
@@ -168,7 +170,7 @@ impl Moves {
         true
     }
 
-    /// Returns true if as many places are moved alike as must be, and enough classes have room for one sensor more.
+    /// Returns true if enough places move alike, and enough classes have room for one more sensor.
     fn suits(&self, rooms: &[i32], to: &[usize]) -> bool {
         let n = rooms.len();
         let moved = |by: i32| (0..n).filter(|&from| to[from] as i32 - from as i32 == by).count() as i32;

@@ -11,7 +11,8 @@ use crate::engine::problem::Merged;
 /// Times in phases a and b of each sensor of the merged problem.
 pub(crate) type Times = Vec<[i32; 2]>;
 
-/// Colours, in phase b so far apart, in phase a with this many of them in reverse, and colour by colour or not.
+/// A pattern of construction: the distance of colours in phase b, the number of colours reversed in phase a, and true
+/// for colour by colour.
 struct Pattern<'m> {
     merged: &'m Merged,
     turns: &'m [usize],
@@ -21,7 +22,7 @@ struct Pattern<'m> {
     by_colour: bool,
 }
 
-/// The constructed schedule with the shortest period, as `period` says it.
+/// The constructed schedule with the shortest period according to `period`.
 pub(crate) fn constructed(merged: &Merged, period: impl Fn(&Times) -> u32) -> Times {
     let turns = fewest_colours(merged);
     let colours = turns.iter().max().map_or(1, |most| most + 1);
@@ -69,7 +70,8 @@ impl Pattern<'_> {
         times
     }
 
-    /// The soonest time from this on at which sensor `x` may fire beside those `placed`, in phase a apart from all |d|.
+    /// The earliest time from this one on at which sensor `x` may fire beside those `placed`; in phase a also apart
+    /// from all |d|.
     fn soonest(&self, times: &Times, phase: usize, placed: &[usize], x: usize, from: i32) -> i32 {
         let merged = self.merged;
         let b = times[x][1];
@@ -100,8 +102,8 @@ impl Pattern<'_> {
     }
 }
 
-/// A colour for each sensor: the first that is free, or its place in one of several blocks as long as each other,
-/// whichever needs fewer. Around a ring the blocks do.
+/// A colour for each sensor, from whichever of two methods needs fewer: the first free colour, or the place in one of
+/// several blocks of equal length. The latter wins in a ring.
 fn fewest_colours(merged: &Merged) -> Vec<usize> {
     let count = merged.count();
     let most = |colours: &[usize]| colours.iter().copied().max().unwrap_or(0);

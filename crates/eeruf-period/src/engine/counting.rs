@@ -1,21 +1,21 @@
 //! Bounds on the period by counting (docs/explanation/theory.md, section 5).
 //!
-//! Where sensors differ, a ring whose sensors all have the smallest separation, gap and window asks for less, so a
-//! bound on its period is one on theirs. Write I for that gap, D for the separation, R for the window, and
-//! `own = min(I, R)` for the time that a firing keeps free of the sensor's own next one.
+//! If sensors differ, a ring whose sensors all have the smallest separation, gap and window requires less, so a bound
+//! on its period is a bound on theirs. Write I for that gap, D for the separation, R for the window, and `own = min(I,
+//! R)` for the time that a firing keeps free of the sensor's own next one.
 //!
 //! - **Clique.** w sensors of which each has a gap to each other fire one by one: `T >= (w - 1) I + own`.
 //! - **Density.** At any time at most alpha of the intervals `[t, t + I)` that begin with a firing are open. Each
 //!   sensor keeps at least `I + own` open in two periods: `2 alpha T >= K (I + own)`. Here alpha is the size of the
 //!   largest set without gaps, or a number of cliques that cover all sensors, which is no smaller.
-//! - **Places.** How few |d| fit where density leaves little to spare: [`Pace`].
-//! - **Classes.** How few |d| fit where clique and gap leave little to spare: [`Classes`].
+//! - **Places.** How many |d| fit if density leaves little to spare: [`Pace`].
+//! - **Classes.** How many |d| fit if clique and gap leave little to spare: [`Classes`].
 
 use crate::engine::classes::{Classes, Kind};
 use crate::engine::problem::Merged;
 use crate::engine::sets::{Pace, cover};
 
-/// An even ring that asks for no more than a problem.
+/// An even ring that requires no more than a problem.
 #[derive(Clone, Debug)]
 pub(crate) struct Even {
     pub(crate) count: usize,
@@ -43,7 +43,7 @@ pub(crate) fn least_period(merged: &Merged) -> u32 {
     capacity(merged).max(in_sequence(merged)).max(of_even(merged)).max(one_by_one.unwrap_or(1))
 }
 
-/// Some large cliques: with each sensor and those after it, round the end, as far as each has gaps to all before.
+/// Some large cliques: each sensor with as many of those after it, cyclically, as have gaps to all before.
 fn cliques(merged: &Merged) -> Vec<u64> {
     let count = merged.count();
     let has_gaps = |x: usize, y: usize| merged.gap[x][y] > 0 && merged.gap[y][x] > 0;
@@ -54,9 +54,9 @@ fn cliques(merged: &Merged) -> Vec<u64> {
     (0..count).map(from).collect()
 }
 
-/// **One by one.** In two periods each sensor of a clique fires twice. After each firing of x the next one of the
-/// clique comes no sooner than the smallest gap after x, or, if it is x again, than its window: that is only where a
-/// phase ends, twice in two periods.
+/// **One by one.** In two periods each sensor of a clique fires twice. After each firing of x the next firing of the
+/// clique comes after the smallest gap of x or later; if it is x again, which happens only where a phase ends, twice in
+/// two periods, after its window.
 fn one_by_one(merged: &Merged, clique: u64) -> u32 {
     let least = |x: usize| members(clique).filter(|&y| y != x).map(|y| merged.gap[x][y]).min();
     let least = |x: usize| least(x).unwrap_or(merged.window[x]);
@@ -64,7 +64,7 @@ fn one_by_one(merged: &Merged, clique: u64) -> u32 {
     (members(clique).map(least).sum::<i32>() - again.unwrap_or(0)) as u32
 }
 
-/// The line of a certificate about counting: the checker verifies that it excludes a period.
+/// A counting argument of a certificate: the checker verifies that it excludes a period.
 #[derive(Clone, Debug)]
 pub(crate) enum Argument {
     /// The |d| in ascending order.
@@ -73,13 +73,12 @@ pub(crate) enum Argument {
     Line(usize),
     /// Neighbours round a ring.
     Ring(usize),
-    /// Sensors of which each has a gap to each other: one set alone, sets that have all sensors, or sets without any
-    /// in common.
+    /// Sensors with gaps to each other: one set, sets that contain all sensors, or disjoint sets.
     Cliques(Vec<u64>),
 }
 
 impl Argument {
-    /// One that excludes the period, if there is any.
+    /// An argument that excludes the period, if there is one.
     pub(crate) fn that_excludes(merged: &Merged, period: u32) -> Option<Self> {
         if in_sequence(merged) > period {
             return Some(Self::Sequence);
@@ -124,8 +123,8 @@ pub(crate) fn lines_of(cliques: &[u64], sensors: &[usize]) -> String {
 }
 
 /// **Sequence.** In ascending order each `|d|` is at least the larger of two separations above the one before: the
-/// least period over all sequences, by the sensors taken and the separation of the last. Of equal separations the
-/// longest window comes first, as exchanging two changes no distance. 1 where that takes too long.
+/// least period over all sequences, by the number of sensors taken and the separation of the last. Of equal separations
+/// the longest window comes first, since exchanging two changes no distance. Returns 1 if that takes too long.
 fn in_sequence(merged: &Merged) -> u32 {
     let mut separations = merged.separation.clone();
     separations.sort_unstable();
@@ -158,8 +157,8 @@ fn in_sequence(merged: &Merged) -> u32 {
     rest.first().map_or(1, |&period| period as u32)
 }
 
-/// **Capacity.** The |d| of those with a window of R at least lie apart, so that the largest of them is at least their
-/// width, and that sensor fires twice within T - |d|.
+/// **Capacity.** The |d| of sensors with a window of at least R lie apart, so the largest of them is at least their
+/// width, and its sensor fires twice within T - |d|.
 pub(crate) fn capacity(merged: &Merged) -> u32 {
     let mut by_window: Vec<usize> = (0..merged.count()).collect();
     by_window.sort_unstable_by_key(|&x| -merged.window[x]);
@@ -173,20 +172,19 @@ pub(crate) fn capacity(merged: &Merged) -> u32 {
     best as u32
 }
 
-/// A bound on the period of a ring whose sensors are all alike, with the argument that gives it. Times are in ticks.
+/// A bound on the period of a ring of identical sensors, with its argument. Times are in ticks.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Bound {
-    /// The window, and behind it all `|d|` with their separation; the smallest is at least `least`.
+    /// The window plus all `|d|` with their separation; the smallest is at least `least`.
     Capacity { sensors: u32, separation: u32, window: u32, least: u32 },
     /// Sensors that all have gaps to each other fire one after the other; `own` passes after the last of them.
     Clique { sensors: u32, interval: u32, own: u32 },
-    /// At most this many sensors can keep their interval at the same time, and `own` after their second firing.
+    /// At most this many sensors can keep their interval at the same time, with `own` after a sensor's second firing.
     Density { sensors: u32, at_once: u32, interval: u32, own: u32 },
-    /// At most this many sensors can keep their interval at the same time, and too few `|d|` fit into the time that
-    /// leaves.
+    /// At most this many sensors can keep their interval at the same time, and too few `|d|` fit into the remaining
+    /// time.
     Places { sensors: u32, at_once: u32, interval: u32, separation: u32, period: u32 },
-    /// Sensors that all have gaps to each other fire one after the other, and too few `|d|` fit into the little time
-    /// that leaves.
+    /// Sensors with gaps to each other fire one after the other, and too few `|d|` fit into the remaining time.
     Classes { clique: u32, sensors: u32, interval: u32, separation: u32, period: u32 },
 }
 
@@ -210,7 +208,7 @@ impl Bound {
     }
 }
 
-/// The largest bound of a ring whose sensors are all alike, by counting.
+/// The largest bound by counting for a ring of identical sensors.
 pub(crate) fn strongest(merged: &Merged) -> Bound {
     let least = if merged.stale_echo { (merged.separation[0] + 1) / 2 } else { 0 };
     let (separation, window) = (merged.separation[0] as u32, merged.window[0] as u32);
@@ -219,13 +217,13 @@ pub(crate) fn strongest(merged: &Merged) -> Bound {
     Even::of(merged).iter().flat_map(|even| even.bounds(merged)).fold(capacity, larger)
 }
 
-/// The bound of the even ring that asks for no more.
+/// The bound of the even ring that requires no more than the problem.
 fn of_even(merged: &Merged) -> u32 {
     Even::of(merged).iter().flat_map(|even| even.bounds(merged)).map(Bound::period).max().unwrap_or(1)
 }
 
 impl Even {
-    /// `None` without any gap.
+    /// The bound of a problem; `None` without any gap.
     pub(crate) fn of(merged: &Merged) -> Option<Self> {
         let interval = merged.gap.iter().flatten().copied().filter(|&gap| gap > 0).min()?;
         let mut separations = merged.separation.clone();
@@ -269,7 +267,7 @@ impl Even {
         bounds
     }
 
-    /// The least period from this one on, which no density excludes, at which all `|d|` find room.
+    /// The least period, from this one on, at which density is met and all `|d|` fit.
     fn least_by_places(&self, at_once: u32, from: u32) -> u32 {
         let pace = |period: u32| Pace::new(self.count, at_once as i32, self.interval, period as i32);
         let excludes = |period: &u32| pace(*period).excludes(self.separation, self.window, self.least);
@@ -281,7 +279,7 @@ impl Even {
         u64::MAX >> (64 - self.count)
     }
 
-    /// A large clique among the sensors `from`, with sensor `first`: greedily, upwards.
+    /// A large clique of `from` with sensor `first`, found greedily in ascending order.
     pub(crate) fn grow(&self, first: usize, from: u64) -> u64 {
         let mut clique = 1_u64 << first;
         let mut common = self.rows[first] & from;
@@ -311,7 +309,7 @@ impl Even {
         disjoint
     }
 
-    /// n, if the sensors stand on a closed ring where each has a gap to the next n - 1 on both sides.
+    /// n, if the sensors form a closed ring in which each has a gap to the next n - 1 on both sides.
     pub(crate) fn ring(&self) -> Option<usize> {
         let n = (self.rows[0] >> 1).trailing_ones() as usize + 1;
         let turned = |x: usize| members(self.rows[x]).fold(0, |set, y| set | 1 << ((y + 1) % self.count));
@@ -325,7 +323,8 @@ mod tests {
     use crate::engine::descent::Random;
     use crate::engine::problem::Problem;
 
-    /// The least period of those with a bit in `left`, less the last |d|, whose separation is given, by trying all.
+    /// The least period for the sensors with a bit in `left`, less the last |d|, whose separation is given; by trying
+    /// all orders.
     fn tried(problem: &Problem, left: u64, last: Option<u32>) -> u32 {
         let after = |x: usize| {
             let own = problem.separation[x];

@@ -1,7 +1,7 @@
 //! Branchings of a short descent: the largest |d|, firing orders, then the ranks of the other |d|, downwards.
 //!
-//! The case that comes first matters only for how soon a schedule is found: it is drawn from a fixed seed, copied from
-//! a schedule for another period or from the sensors next to it, or the one that leaves the others most room.
+//! The order of cases affects only how soon a schedule is found: the first case is drawn from a fixed seed, copied from
+//! a schedule for another period or from the neighbouring sensors, or is the one that leaves the others most room.
 
 use crate::engine::bounds::Refuted;
 use crate::engine::branching::Branching;
@@ -14,9 +14,9 @@ use crate::engine::state::{State, event};
 /// A case of a branching.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Case {
-    /// A case of two.
+    /// One of two cases.
     Of(Branching, usize),
-    /// Sensor x has the largest |d| of these, and d is negative or not.
+    /// Sensor x has the largest |d| of these, and its d is negative or not.
     Largest { x: usize, negative: bool, of: u64 },
 }
 
@@ -52,20 +52,20 @@ impl Random {
     }
 }
 
-/// The first alternative to try.
+/// The rules for choosing the first alternative.
 pub(crate) struct Choice {
     pub(crate) random: Option<Random>,
     /// The times of a schedule with another period.
     pub(crate) guide: Option<Times>,
-    /// The sensors that the guide says nothing of (*large neighbourhood search*, Shaw 1998), as bits.
+    /// The sensors for which the guide is ignored (*large neighbourhood search*, Shaw 1998), as bits.
     free: u64,
     /// True if separations differ, and the |d| of this period leave no room.
     has_wide: bool,
-    /// True if a sensor with a large separation shall have the largest |d|.
+    /// True to try a sensor with a large separation first for the largest |d|.
     prefers_wide: bool,
-    /// Orders are copied from the sensors so much further along.
+    /// Distance to the sensors from which orders are copied.
     shift: usize,
-    /// The sensor with the largest |d|, and the sensors in the order in which their firing orders are decided then.
+    /// The sensor with the largest |d|, then the sensors in the order in which their firing orders are decided.
     sequence: Option<(usize, Vec<usize>)>,
 }
 
@@ -85,7 +85,7 @@ impl Choice {
         Self { random: None, guide, free: 0, has_wide, prefers_wide: false, shift, sequence: None }
     }
 
-    /// Begins another descent: by chance, or along the guide but for some sensors next to each other.
+    /// Begins another descent: at random, or along the guide except for some adjacent sensors.
     pub(crate) fn restart(&mut self, seed: u64, guide: Option<Times>, count: usize) {
         let mut random = Random::new(seed);
         self.free = 0;
@@ -102,7 +102,7 @@ impl Choice {
         self.guide.as_ref().filter(|_| self.free >> x & 1 == 0).map(|guide| guide[x])
     }
 
-    /// The cases of the next branching, the first to try last. `None` if nothing is left.
+    /// The cases of the next branching; the one to try first comes last. `None` if nothing is left.
     pub(crate) fn cases(&mut self, state: &State, merged: &Merged) -> Option<Vec<Case>> {
         let all = u64::MAX >> (64 - merged.count());
         let above = |x: usize, set: u64| members(set).all(|y| y == x || state.is_below(y, x));
@@ -208,8 +208,8 @@ impl Choice {
         None
     }
 
-    /// True if x fires before y by the guide, or by the order of the sensors one clique further along; `None` where
-    /// neither says.
+    /// True if x fires before y in the guide, or in the order copied from the sensors one clique further along; `None`
+    /// if neither decides.
     fn pattern(&self, state: &State, merged: &Merged, x: usize, y: usize, phase: usize) -> Option<bool> {
         if let (Some(x), Some(y)) = (self.guide_of(x), self.guide_of(y)) {
             return Some(x[phase] < y[phase]);
@@ -233,7 +233,7 @@ impl Choice {
     }
 }
 
-/// Sensors from `first` on, each the one with the most gaps to those before it.
+/// Sensors from `first` on; each next one has the most gaps to those before it.
 fn sequence(merged: &Merged, first: usize) -> Vec<usize> {
     let (mut sequence, mut taken) = (vec![first], 1_u64 << first);
     while sequence.len() < merged.count() {

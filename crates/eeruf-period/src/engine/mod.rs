@@ -16,13 +16,13 @@
 //!
 //! # The engine and the checker
 //!
-//! `checker/check_period.py` has a matrix, a state and rules of its own, in another language: a mistake in one is none
-//! in the other. Both state the rules of docs/reference/certificate.md, for a certificate gives the tree alone, and a
-//! checker must come to the same refutations. Where they differ, they do on purpose:
+//! `checker/check_period.py` has a matrix, a state and rules of its own, in another language: a mistake in one is not
+//! repeated in the other. Both implement the rules of docs/reference/certificate.md, since a certificate contains only
+//! the tree, and a checker must reach the same refutations. They differ on purpose:
 //!
 //! - The checker reads each assumption about symmetry from the text and verifies it; the engine constructs those that
 //!   turns, reflections and exchanges give, and keeps them as data.
-//! - The checker says which line is wrong and why; the engine asks only whether a schedule keeps the needs.
+//! - The checker says which line is wrong and why; the engine only checks that a schedule keeps the needs.
 //! - The checker replays branchings; the engine chooses them, and in a search takes the times at the bounds for a
 //!   schedule as soon as they serve.
 //! - The checker keeps a matrix in one integer for each open node; the engine has one matrix and a log that takes it

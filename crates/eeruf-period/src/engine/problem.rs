@@ -7,7 +7,7 @@ pub struct Problem {
     pub tick_us: (u32, u32),
     /// Each sensor's separation D: `|d_x|` and `|d_y|` are at least `max(D_x, D_y)` apart.
     pub separation: Vec<u32>,
-    /// Each sensor's listening window R: it fires again no sooner.
+    /// Each sensor's listening window R, before which it does not fire again.
     pub window: Vec<u32>,
     /// True if `2 |d_x| >= D_x` is required.
     pub stale_echo: bool,
@@ -107,23 +107,23 @@ impl Claim {
 /// the strictest requirement of the group is the requirement of all.
 #[derive(Clone, Debug)]
 pub(crate) struct Merged {
-    /// The one of each sensor.
+    /// The merged sensor of each sensor.
     pub(crate) of_sensor: Vec<usize>,
     pub(crate) separation: Vec<i32>,
     pub(crate) window: Vec<i32>,
     pub(crate) stale_echo: bool,
-    /// `gap[x][y]`: y fires no sooner than this after x; 0 where there is no requirement.
+    /// `gap[x][y]`: the least time from x to y; 0 without a requirement.
     pub(crate) gap: Vec<Vec<i32>>,
     /// The pairs x < y with a gap.
     pub(crate) pairs: Vec<(usize, usize)>,
-    /// Sensors with which each has a gap.
+    /// For each sensor, those with which it has a gap.
     pub(crate) neighbours: Vec<Vec<usize>>,
     /// The least distance of any two |d|.
     pub(crate) least_apart: i32,
 }
 
 impl Problem {
-    /// Sensors that are all alike, in ticks of 1 ms: row x of `neighbours` has bit y if a gap lies between x and y.
+    /// A problem of identical sensors, in ticks of 1 ms: row x of `neighbours` has bit y if x and y have a gap.
     #[must_use]
     pub fn alike(neighbours: &[u64], separation: u32, gap: u32, window: u32) -> Self {
         let sensors = neighbours.len();
@@ -150,8 +150,8 @@ impl Problem {
         self.separation.iter().chain(&self.window).copied().chain(gaps)
     }
 
-    /// Returns the problem where the smallest separation is that of two: of any two sensors the larger counts, so that
-    /// of a single one with a smaller separation never does, but for its own stale echoes.
+    /// Returns the problem with the smallest separation raised to the second smallest. For any two sensors the larger
+    /// counts, so a single smaller one matters only for that sensor's own stale echoes.
     pub(crate) fn with_separations_that_count(&self) -> Self {
         let merged = self.merged();
         let raised = |of: &usize, own: u32| {
@@ -163,7 +163,7 @@ impl Problem {
         Self { separation, ..self.clone() }
     }
 
-    /// The even ring that asks for no more: all sensors have the smallest separation that counts, the smallest gap and
+    /// The even ring that requires no more: all sensors have the smallest separation that counts, the smallest gap and
     /// the smallest window. `None` if that is the problem itself.
     pub(crate) fn evened(&self) -> Option<Self> {
         let counts = self.with_separations_that_count();
@@ -178,10 +178,10 @@ impl Problem {
         (even != counts).then_some(even)
     }
 
-    /// The problem with windows and gaps raised to what most have: its schedules are schedules of the problem, and it
-    /// often has symmetries that the problem lacks. `None` if none or many are lower.
+    /// The problem with low windows and gaps raised to the most common value: its schedules serve the problem, and it
+    /// often has more symmetries. `None` if no values, or many, are lower.
     pub(crate) fn raised(&self) -> Option<Self> {
-        /// The most windows and pairs to raise: beyond, a search of the problem itself takes no longer.
+        /// Largest number of windows and pairs to raise: with more, a search of the problem itself takes no longer.
         const MOST: usize = 8;
         let [windows, _, gaps] = self.limits();
         let (window, gap) = (most_common(&windows)?.0, most_common(&gaps).map_or(0, |(gap, _)| gap));
@@ -201,13 +201,13 @@ impl Problem {
         self.together.is_empty() && self.limits().iter().all(alike)
     }
 
-    /// All windows, separations and gaps.
+    /// All windows, separations and gaps, by kind.
     pub(crate) fn limits(&self) -> [Vec<u32>; 3] {
         let gaps = self.gaps.iter().flat_map(|&(.., after_x, after_y)| [after_x, after_y]).collect();
         [self.window.clone(), self.separation.clone(), gaps]
     }
 
-    /// Returns true if one kind of limit has no value that half of the sensors or pairs have.
+    /// Returns true if for one kind of limit no value applies to half of the sensors or pairs.
     pub(crate) fn is_mixed(&self) -> bool {
         self.limits().into_iter().any(|limits| most_common(&limits).is_some_and(|(_, alike)| 2 * alike < limits.len()))
     }
@@ -249,7 +249,7 @@ impl Problem {
     }
 }
 
-/// The number that comes most often, of several the largest, and how often.
+/// The most common number, the largest of several, and its count.
 pub(crate) fn most_common(numbers: &[u32]) -> Option<(u32, usize)> {
     let often = |number: u32| numbers.iter().filter(|other| **other == number).count();
     numbers.iter().map(|&number| (number, often(number))).max_by_key(|&(number, often)| (often, number))
@@ -260,7 +260,7 @@ impl Merged {
         self.separation.len()
     }
 
-    /// The first sensor of each group, or the sensor itself.
+    /// The first sensor of each sensor's group, or the sensor itself.
     pub(crate) fn firsts(&self) -> Vec<usize> {
         (0..self.count()).map(|one| self.of_sensor.iter().position(|of| *of == one).unwrap_or(0)).collect()
     }

@@ -1,6 +1,6 @@
 //! Writes certificates: a depth-first search for a tree of branchings that refutes every shorter period.
 //!
-//! Nothing here needs to be trusted: a checker that shares nothing with it reads what it writes.
+//! Nothing here needs to be trusted: an independent checker reads its output.
 
 use core::fmt;
 
@@ -17,12 +17,12 @@ use crate::engine::symmetry::Assumptions;
 pub enum NoProof {
     /// The budget of this many nodes is spent.
     Budget(usize),
-    /// The caller wanted no more.
+    /// The caller stopped the proof.
     Stopped,
-    /// A branch is neither refuted nor is there anything left to branch on. The earliest firing times
-    /// there are a schedule with a period of `bound - 1`.
+    /// A branch is not refuted, and nothing is left to branch on. Its earliest firing times are a schedule with a
+    /// period of `bound - 1`.
     Feasible([Vec<u32>; 2]),
-    /// The claim is wrong in itself.
+    /// The claim itself is wrong.
     Claim(String),
 }
 
@@ -41,8 +41,8 @@ impl fmt::Display for NoProof {
 
 impl core::error::Error for NoProof {}
 
-/// Writes a certificate of the claim; if budget or caller end the proof too early, one with the highest bound for which
-/// a sixteenth of the budget suffices, or the rules alone after the caller wanted no more.
+/// Writes a certificate of the claim. If the budget or the caller ends the proof too early, it is for the highest bound
+/// that a sixteenth of the budget proves, or, if the caller ended it, the rules alone.
 ///
 /// # Errors
 ///
@@ -78,7 +78,7 @@ pub fn prove(claim: &Claim, budget: usize) -> Result<String, NoProof> {
     prove_while(claim, budget, |_| true)
 }
 
-/// Proves like [`prove`], as long as `go_on` says so: it is asked now and then, with the number of nodes so far.
+/// Proves like [`prove`] while `go_on`, called occasionally with the number of nodes so far, returns true.
 ///
 /// # Errors
 ///

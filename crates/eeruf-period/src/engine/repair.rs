@@ -9,34 +9,34 @@ use crate::engine::descent::Random;
 use crate::engine::problem::Merged;
 use crate::engine::search::FiringTimes;
 
-/// Weights at which all are halved, so that no sum of many is larger than what counts.
+/// Weight at which all weights are halved, to keep sums small.
 const HEAVY: i16 = 256;
-/// The pairs of times that cost as much as a node of a search.
+/// Number of pairs of times that cost as much as a node of a search.
 pub(crate) const PAIRS: u64 = 1 << 15;
 
-/// The least and the most that the `|d|` of x may be by itself.
+/// The least and the greatest `|d|` that x may have by itself.
 fn sizes(merged: &Merged, period: i32, x: usize) -> (i32, i32) {
     let least = if merged.stale_echo { (merged.separation[x] + 1) / 2 } else { 0 }.min(period - 1);
     (least, (period - merged.window[x]).clamp(least, period - 1))
 }
 
-/// Times that break some needs of a period, and their repair.
+/// Firing times that violate some needs of a period, and their repair.
 pub(crate) struct Repair {
     random: Random,
     pub(crate) period: i32,
     times: Times,
-    /// Weights of the gaps, then of the separation, of each pair, both ways.
+    /// Weights of the gaps, then of the separations, of each pair in both directions.
     weights: [Vec<i16>; 2],
-    /// The number of needs that each sensor breaks with others.
+    /// Number of needs that each sensor violates with others.
     broken: Vec<i16>,
     /// The sensor that moved last.
     last: usize,
-    /// Room for the costs of a sensor's times in phases a and b, and of its `|d|`.
+    /// Buffers for the costs of a sensor's times in phases a and b, and of its `|d|`.
     costs: [Vec<i16>; 3],
 }
 
 impl Repair {
-    /// Begins with times for a longer period.
+    /// A repair that begins with times for a longer period.
     pub(crate) fn new(merged: &Merged, period: u32, fire: &FiringTimes, seed: u64) -> Self {
         let (count, period) = (merged.count(), period as i32);
         let mut times: Times = merged.firsts().iter().map(|&x| fire.each_ref().map(|times| times[x] as i32)).collect();
@@ -60,7 +60,7 @@ impl Repair {
         [0, 1].map(|phase: usize| merged.of_sensor.iter().map(|&one| self.times[one][phase] as u32).collect())
     }
 
-    /// The needs that x and y break together, 0 or 1: gaps, separation.
+    /// The number of needs that x and y violate together, 0 or 1 each: gaps, separation.
     fn breaks(&self, merged: &Merged, x: usize, y: usize) -> [i16; 2] {
         let (to, back, [own, other]) = (merged.gap[x][y], merged.gap[y][x], [self.times[x], self.times[y]]);
         let gaps = to > 0
@@ -74,7 +74,7 @@ impl Repair {
         [gaps, (size(own) - size(other)).abs() < merged.apart(x, y)].map(i16::from)
     }
 
-    /// Moves a sensor. Returns true if the times keep all needs.
+    /// Moves a sensor. Returns true if the times then keep all needs.
     pub(crate) fn step(&mut self, merged: &Merged) -> bool {
         let count = merged.count();
         let broken = |x: &usize| self.broken[*x] > 0 && *x != self.last;
@@ -105,7 +105,7 @@ impl Repair {
         self.broken.iter().all(|needs| *needs == 0)
     }
 
-    /// Adds up the costs of each time of x and of each `|d|`: the weights of the needs that it breaks.
+    /// Computes the cost of each time of x and of each `|d|`: the sum of the weights of violated needs.
     fn weigh(&mut self, merged: &Merged, x: usize) {
         let Self { period, times, weights: [of_gaps, of_sizes], costs, .. } = self;
         let (period, count) = (*period, merged.count());
@@ -135,8 +135,8 @@ impl Repair {
         }
     }
 
-    /// The times of x that break least, by chance among several, others than now if there are; and true if they break
-    /// less than those now.
+    /// The times of x that violate least, at random among equal ones and different from the present ones if possible;
+    /// true if they violate less than those.
     fn best(&mut self, merged: &Merged, x: usize) -> (bool, [i32; 2]) {
         let Self { random, period, times, costs: [of_a, of_b, of_size], .. } = self;
         let (first, last) = sizes(merged, *period, x);

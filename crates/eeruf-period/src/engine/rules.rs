@@ -1,15 +1,15 @@
-//! Propagation: rules 2 to 6 of docs/reference/certificate.md, where each has its proof. Rule 1, the closure
-//! of bounds, is in `bounds`.
+//! Propagation: rules 2 to 6 of docs/reference/certificate.md, where each has its proof. Rule 1, the closure of bounds,
+//! is in `bounds`.
 //!
-//! Each rule only ever tightens, and more the tighter its premises are. So all orders of applying them end in the same
-//! state: a certificate's tree is refuted where the checker's own copy of the rules refutes it.
+//! Each rule only tightens bounds, and is monotone. So all orders of applying them end in the same state, and engine
+//! and checker refute the same nodes of a certificate's tree.
 
 use crate::engine::bounds::{Bound, Refuted};
 use crate::engine::counting::members;
 use crate::engine::problem::{MAX_SENSORS, Merged};
 use crate::engine::state::{State, event, firing};
 
-/// Applies all rules until none tells anything new.
+/// Applies all rules until none concludes anything new.
 pub(crate) fn propagate(state: &mut State, merged: &Merged) -> Result<(), Refuted> {
     loop {
         // The cheap rules first: most refutations need no other.
@@ -37,7 +37,7 @@ pub(crate) fn propagate(state: &mut State, merged: &Merged) -> Result<(), Refute
     }
 }
 
-/// Rule 2: if y cannot come `gap` after x, then x comes after y. Only rows of the matrix that changed can say so again.
+/// Rule 2: if y cannot come `gap` after x, then x comes after y. Only changed rows of the matrix are looked at.
 fn orders(state: &mut State, merged: &Merged) -> Result<bool, Refuted> {
     let mut news = false;
     while let Some(changed) = state.bounds.take_changed() {
@@ -75,7 +75,7 @@ fn signs(state: &mut State) -> Result<bool, Refuted> {
     Ok(news)
 }
 
-/// Rule 4: the order of |d|, and what it says of their bounds.
+/// Rule 4: the order of |d|, and its consequences for their bounds.
 fn ranks(state: &mut State, merged: &Merged) -> Result<bool, Refuted> {
     let count = merged.count();
     let mut news = false;
@@ -124,7 +124,7 @@ fn ranks(state: &mut State, merged: &Merged) -> Result<bool, Refuted> {
     Ok(news)
 }
 
-/// The numbers below `count`, sorted by `key`: by insertion, as they are few.
+/// The numbers below `count`, sorted by `key`; by insertion, as they are few.
 fn ascending(numbers: &mut [u8; MAX_SENSORS], count: usize, key: impl Fn(usize) -> Bound) -> &[u8] {
     for i in 0..count {
         let (own, mut at) = (key(i), i);
@@ -137,8 +137,8 @@ fn ascending(numbers: &mut [u8; MAX_SENSORS], count: usize, key: impl Fn(usize) 
     &numbers[..count]
 }
 
-/// A bound below all `values`, each a value's upper bound and its separation, in ascending order: below any set of them
-/// by the width that the set needs, together with a value of separation `own`.
+/// The greatest bound that lies below all `values`: below any set of them by the width of the set and a value of
+/// separation `own`. Each of `values` is an upper bound and a separation, in ascending order.
 fn beyond(values: impl Iterator<Item = (Bound, i32)>, own: i32) -> Option<Bound> {
     let (mut width, mut narrowest) = (own, own);
     let mut least: Option<Bound> = None;
@@ -151,10 +151,10 @@ fn beyond(values: impl Iterator<Item = (Bound, i32)>, own: i32) -> Option<Bound>
     least
 }
 
-/// Rule 5, Hall's condition: those whose |d| lies within an interval must have room there.
+/// Rule 5, Hall's condition: the sensors whose |d| lies within an interval must have room there.
 ///
-/// With `goes_further`: where they leave no room for another, it is above all of them if it may not lie below the
-/// interval, and below all of them if it may not lie above it (*Hall intervals*, Puget 1998).
+/// With `goes_further`, if they leave no room for another sensor, its |d| is above all of them if it cannot lie below
+/// the interval, and below all of them if it cannot lie above it (*Hall intervals*, Puget 1998).
 fn spacing(state: &mut State, merged: &Merged) -> Result<bool, Refuted> {
     let count = merged.count();
     let mut news = false;
@@ -204,13 +204,13 @@ fn spacing(state: &mut State, merged: &Merged) -> Result<bool, Refuted> {
     Ok(news)
 }
 
-/// The events whose difference, second less first, is `d_x`, or `-d_x` if `negative`.
+/// The two events whose difference, second less first, is `d_x`, or `-d_x` if `negative`.
 fn ends(x: usize, negative: bool) -> (usize, usize) {
     (event(x, usize::from(!negative)), event(x, usize::from(negative)))
 }
 
-/// For two of known signs with `|d_x|` below `|d_y|`: the later event of y is as far behind that of x as the separation
-/// goes beyond the distance of the earlier ones, and the other way round. Only in searches: certificates do without.
+/// For two sensors of known signs with `|d_x|` below `|d_y|`: the later event of y follows that of x by the separation
+/// less the distance of the earlier events, and vice versa. Used only in searches, not for certificates.
 fn behind(state: &mut State, merged: &Merged) -> Result<bool, Refuted> {
     let sign = |state: &State, x: usize| {
         if state.most(x, true) <= 0 { Some(false) } else { (state.most(x, false) <= 0).then_some(true) }
@@ -228,8 +228,8 @@ fn behind(state: &mut State, merged: &Merged) -> Result<bool, Refuted> {
     Ok(news)
 }
 
-/// Rule 6: those whose d is below `d_y` by what their firing orders force are apart among themselves, so `d_y` is as
-/// far behind the last of them.
+/// Rule 6: the sensors whose firing orders force their d below `d_y` are apart among themselves, so `d_y` lies above
+/// the last of them.
 fn precedence(state: &mut State, merged: &Merged) -> Result<bool, Refuted> {
     let count = merged.count();
     let mut news = false;

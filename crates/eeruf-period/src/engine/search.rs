@@ -1,4 +1,4 @@
-//! Searches for schedules of one period: a depth-first search, whose tree a certificate writes down, and short descents
+//! Searches for schedules of one period: a depth-first search, whose tree a certificate records, and short descents
 //! with *Luby restarts* (Luby, Sinclair and Zuckerman 1993).
 
 use core::cell::OnceCell;
@@ -18,24 +18,24 @@ pub type FiringTimes = [Vec<u32>; 2];
 /// The outcome of a search for a schedule with a period.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Decided {
-    /// Firing times that serve.
+    /// Firing times with this period.
     Found(FiringTimes),
-    /// None serve.
+    /// No firing times have this period.
     Refuted,
-    /// The budget is spent: neither.
+    /// The budget is spent, and the question is open.
     Open,
-    /// The caller wanted no more.
+    /// The caller stopped the search.
     Stopped,
 }
 
-/// A problem, ready to be searched again and again.
+/// A search for schedules of one problem, which can be run again and again.
 #[derive(Clone, Debug)]
 pub struct Search {
     problem: Problem,
     merged: Merged,
-    /// Assumptions of the root of a full search, once it is asked for: that takes as long as many nodes.
+    /// Assumptions at the root of a full search; computed on demand, since that takes as long as many nodes.
     assumptions: OnceCell<Assumptions>,
-    /// The number of nodes between two questions whether to go on.
+    /// Number of nodes between two calls of `go_on`.
     between: u64,
     /// Nodes visited so far.
     nodes: u64,
@@ -47,14 +47,14 @@ fn luby(i: u64) -> u64 {
     if i == (1 << power) - 1 { 1 << (power - 1) } else { luby(i - ((1 << (power - 1)) - 1)) }
 }
 
-/// The number of nodes between two questions whether to go on: few enough to ask every few milliseconds, as a node
-/// costs about the cube of the number of sensors.
+/// The number of nodes between two calls of `go_on`: few enough to call it every few milliseconds, as a node costs
+/// about the cube of the number of sensors.
 pub(crate) fn nodes_between(sensors: usize) -> usize {
     (64 * 8 * 8 * 8 / sensors.max(1).pow(3)).clamp(1, 64)
 }
 
 impl Search {
-    /// The search of whole ticks for this problem.
+    /// A search in whole ticks for this problem.
     #[must_use]
     pub fn new(problem: &Problem) -> Self {
         Self {
@@ -85,7 +85,7 @@ impl Search {
         self.root(period).is_none()
     }
 
-    /// The number of branchings that decide every order, sign and rank: as many nodes as a descent may take.
+    /// The number of branchings that decide every order, sign and rank, and so the most nodes of a descent.
     #[must_use]
     pub fn depth(&self) -> u64 {
         let count = self.merged.count();
@@ -100,7 +100,7 @@ impl Search {
         self.walk(period, &mut state, budget, None, go_on)
     }
 
-    /// Decides by branchings along time.
+    /// Decides by branchings in the order of time.
     pub fn decide_in_time(&mut self, period: u32, budget: u64, go_on: &mut dyn FnMut(u64) -> bool) -> Decided {
         let assumptions = self.assumptions.get_or_init(|| Assumptions::of(&self.problem.with_separations_that_count()));
         let Ok(mut state) = assumptions.root_in_time(&self.merged, period + 1) else { return Decided::Refuted };
@@ -142,7 +142,7 @@ impl Search {
         Decided::Open
     }
 
-    /// Looks for firing times by repairing these, at the cost of at most `budget` nodes: not at all where ticks are so
+    /// Looks for firing times by repairing these, at the cost of at most `budget` nodes: not at all if ticks are so
     /// fine that a move costs more.
     pub(crate) fn repair(&mut self, repair: &mut Repair, budget: u64, go_on: &mut dyn FnMut(u64) -> bool) -> Decided {
         let end = self.nodes.saturating_add(budget);
@@ -163,13 +163,13 @@ impl Search {
         Decided::Open
     }
 
-    /// The nodes of a short descent.
+    /// The number of nodes of a short descent.
     pub(crate) fn unit(&self) -> u64 {
         32 + 6 * self.merged.count() as u64
     }
 
-    /// Bounds that every schedule of this period keeps, if there may be any: without assumptions about symmetry, so
-    /// that a short descent may end in each.
+    /// Bounds that every schedule of this period keeps, unless they refute it: without assumptions about symmetry, so
+    /// that a descent can end in any schedule.
     fn root(&self, period: u32) -> Option<State> {
         let mut state = State::new(&self.merged, period as i32 + 1).ok()?;
         state.goes_further = true;
@@ -225,7 +225,7 @@ impl Search {
         }
     }
 
-    /// The earliest or the latest times that the bounds allow, if they happen to keep everything.
+    /// The earliest or the latest times within the bounds, if they keep all needs.
     fn reading(&self, period: u32, state: &State) -> Option<FiringTimes> {
         let earliest = |one: usize, phase: usize| -state.bounds.at(event(one, phase), 0);
         let latest = |one: usize, phase: usize| state.bounds.at(0, event(one, phase));

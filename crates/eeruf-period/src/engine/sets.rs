@@ -1,11 +1,11 @@
-//! Sets of sensors of which few can fire close together, and what that says of the times of their firings.
+//! Sets of sensors of which few can fire close together, and the resulting bounds on their firing times.
 
 use crate::engine::counting::{Even, members};
 use crate::engine::problem::Merged;
 
-/// Cliques, and in how many of them each sensor is, at least: windows of neighbours round a ring or along a line, also
-/// those that its ends cut off; else a partition. So at most as many sensors have their interval open at once as there
-/// are cliques, divided by that.
+/// Cliques, and the least number of them that contain a sensor: windows of neighbours round a ring or along a line,
+/// including those that its ends cut off; else a partition. The number of cliques divided by that number limits how
+/// many sensors have their interval open at once.
 pub(crate) fn cover(merged: &Merged) -> (Vec<u64>, usize) {
     let count = merged.count();
     let Some(even) = Even::of(merged) else { return ((0..count).map(|x| 1 << x).collect(), 1) };
@@ -50,14 +50,14 @@ impl Pace {
     }
 
     /// The least time from a firing to the one that comes this many steps later: `at_once` steps take an interval, also
-    /// if they go round two periods some times more.
+    /// across several times two periods.
     pub(crate) fn least(&self, steps: i32) -> i32 {
         let round =
             |turns: i32| self.interval * ((steps + 2 * self.sensors * turns) / self.at_once) - 2 * self.period * turns;
         (0..self.at_once).map(round).max().unwrap_or(0)
     }
 
-    /// Returns true if fewer |d| than sensors lie apart where these times allow them.
+    /// Returns true if these times leave room for fewer separated |d| than there are sensors.
     ///
     /// A sensor at place p in phase a and q in phase b has `K + q - p` steps from its firing in a to that in b, and as
     /// many fewer than `2 K` from there to the next in a; with `e = |p - q|`, `|d|` lies between `least(K + e) - T` and

@@ -18,7 +18,7 @@ pub struct Shortest {
     pub bound: u32,
     /// Nodes visited.
     pub nodes: u64,
-    /// True if every shorter period is refuted without distinguishing cases.
+    /// True if every shorter period is refuted without branching.
     pub without_cases: bool,
 }
 
@@ -33,10 +33,10 @@ pub struct SoFar {
     pub bound: u32,
 }
 
-/// The shortest period, within `budget` nodes and as long as `go_on` says so: it is asked every few milliseconds.
+/// The shortest period found within `budget` nodes while `go_on`, called every few milliseconds, returns true.
 ///
-/// There is always a schedule, firing one by one, unless sensors that fire together must keep a gap or the period is
-/// beyond [`MAX_TICKS`] ticks: then `None`. The answer depends on problem and budget alone.
+/// Firing one by one is always a schedule, unless sensors that fire together must keep a gap or the period exceeds
+/// [`MAX_TICKS`] ticks; then the result is `None`. The answer depends on problem and budget alone.
 #[must_use]
 pub fn shortest(problem: &Problem, budget: u64, go_on: &mut dyn FnMut(&SoFar) -> bool) -> Option<Shortest> {
     let mut run = Run::new(problem, true)?;
@@ -47,14 +47,14 @@ pub fn shortest(problem: &Problem, budget: u64, go_on: &mut dyn FnMut(&SoFar) ->
     Some(Shortest { nodes, without_cases: run.found.period == run.bound_of_rules, ..run.found })
 }
 
-/// The longest period that is searched, in ticks: sums of a few such times stay far below what bounds can hold. A
-/// certificate takes no more than [`MAX_NUMBER`](crate::engine::MAX_NUMBER).
+/// The longest period that is searched, in ticks: sums of a few such times fit into a bound. A certificate takes at
+/// most [`MAX_NUMBER`](crate::engine::MAX_NUMBER).
 pub const MAX_TICKS: u32 = 1 << 24;
 /// The nodes of the first round for each sensor.
 const EFFORT: u64 = 16;
-/// The rounds that start at the bound, as long as nothing is found.
+/// Number of rounds that start at the bound while nothing is found.
 const GALLOPS: u32 = 2;
-/// The efforts that go into repairs at one period.
+/// Number of efforts spent on repairs at one period.
 const REPAIRS: u64 = 4;
 
 /// The search for one problem.
@@ -63,33 +63,33 @@ struct Run {
     found: Shortest,
     /// The search ends at this many nodes.
     limit: u64,
-    /// True if the schedule found came from a search, so that it is worth following.
+    /// True if the schedule came from a search, so that it is worth following.
     is_guide: bool,
     /// Rounds that started at the bound.
     gallops: u32,
-    /// The problem in coarser ticks, and their length.
+    /// The problem in coarser ticks, and the length of those ticks.
     coarse: Option<(Box<Run>, u32)>,
-    /// The even ring that asks for no more.
+    /// The even ring that requires no more.
     even: Option<Box<Run>>,
-    /// True if schedules are looked for by repairs too.
+    /// True if schedules are also looked for by repairs.
     is_mixed: bool,
-    /// The ring that most sensors ask for, for its schedules.
+    /// The problem with limits raised to the common ones; its schedules serve too.
     raised: Option<Box<Run>>,
-    /// Nodes of runs that ended.
+    /// Number of nodes of finished searches.
     ended: u64,
-    /// The bound that follows without distinguishing cases.
+    /// The bound that follows without branching.
     bound_of_rules: u32,
 }
 
-/// The caller wanted no more.
+/// The error of a search that the caller stopped.
 struct Stopped;
 
-/// Asks the caller whether to go on, with the nodes so far and what is found.
+/// The caller's function that decides whether to go on, given the nodes so far and the best result.
 type Ask<'a> = &'a mut dyn FnMut(u64, &Shortest) -> bool;
 
 impl Run {
-    /// Begins with a constructed schedule, and with what counting and the rules alone say. `None` if sensors that fire
-    /// together must keep a gap, or where numbers are too large.
+    /// A run that begins with a constructed schedule and the bounds from counting and the rules. `None` if sensors that
+    /// fire together must keep a gap, or if numbers are too large.
     fn new(problem: &Problem, is_first: bool) -> Option<Self> {
         if problem.numbers().any(|number| number > MAX_TICKS) {
             return None;
@@ -128,7 +128,7 @@ impl Run {
         Some(run)
     }
 
-    /// Finds and proves, in rounds with growing efforts, as far as budget and caller let it.
+    /// Finds and proves the shortest period in rounds of growing effort, as far as budget and caller allow.
     fn search(&mut self, go_on: &mut dyn FnMut(&SoFar) -> bool) -> Result<(), Stopped> {
         let mut ask = |nodes: u64, found: &Shortest| go_on(&SoFar { nodes, best: found.period, bound: found.bound });
         let mut effort = EFFORT * self.sensors();
@@ -150,7 +150,7 @@ impl Run {
         Ok(())
     }
 
-    /// One round: what is open of the coarse ticks and of the even ring, then of the problem itself.
+    /// One round: the open part of the coarse problem and of the even ring, then the problem itself.
     fn round(&mut self, effort: u64, ask: Ask<'_>) -> Result<(), Stopped> {
         // Where few limits differ, the rings beside have the schedules.
         if self.is_mixed {
@@ -217,7 +217,7 @@ impl Run {
         self.gallop(effort, ask)
     }
 
-    /// Goes down from the best schedule by repairs, in steps that halve where they find nothing.
+    /// Shortens the best schedule by repairs, in steps that are halved when they find nothing.
     fn repair(&mut self, effort: u64, ask: Ask<'_>) -> Result<(), Stopped> {
         let mut step = ((self.found.period - self.found.bound) / 8).max(1);
         while step > 0 && self.is_open() {
@@ -234,7 +234,7 @@ impl Run {
         Ok(())
     }
 
-    /// Takes these times if they serve at a shorter period.
+    /// Accepts these times if they serve at a shorter period.
     fn offer(&mut self, fire: FiringTimes, is_guide: bool) {
         let period = period_of(self.search.problem(), &fire);
         if period < self.found.period || is_guide && !self.is_guide && period == self.found.period {
@@ -243,7 +243,7 @@ impl Run {
         }
     }
 
-    /// The nodes of this search and of those that help it.
+    /// The nodes of this search and of its helper searches.
     fn nodes(&self) -> u64 {
         let coarse = self.coarse.as_ref().map_or(0, |(coarse, _)| coarse.nodes());
         self.ended
@@ -261,8 +261,8 @@ impl Run {
         self.found.bound < self.found.period && self.nodes() < self.limit
     }
 
-    /// Starts at the bound, as bounds are often met, and goes up in growing steps until something is found: a far
-    /// longer period is not far easier to find.
+    /// Starts at the bound, which is often attained, and goes up in growing steps until a schedule is found: an
+    /// exponential search.
     fn gallop(&mut self, effort: u64, ask: Ask<'_>) -> Result<(), Stopped> {
         let mut step = ((self.found.period - self.found.bound + 1) >> 8).max(1);
         let mut period = self.found.bound;
@@ -276,8 +276,8 @@ impl Run {
         if self.is_open() { self.decide(self.found.period - 1, effort, ask).map(drop) } else { Ok(()) }
     }
 
-    /// The period just below the best decides all: either it has a schedule, or nothing better is there. This tries to
-    /// refute it, and to find something better by bisection.
+    /// Tries to refute the period just below the best, which would prove the best, and to find a better one by
+    /// bisection.
     fn bisect(&mut self, effort: u64, ask: Ask<'_>) -> Result<(), Stopped> {
         let far = |found: &Shortest| found.period - found.bound > found.period / 32;
         while self.is_open() && far(&self.found) && self.finds(self.found.period - 1, 4 * effort, ask)? {}
@@ -299,7 +299,7 @@ impl Run {
         Ok(())
     }
 
-    /// The highest bound that follows without distinguishing cases: longer periods are no harder, so by bisection.
+    /// The highest bound that follows without branching: by bisection, since longer periods are no harder.
     fn bound_by_rules(&mut self) {
         let (mut open, mut middle) = (self.found.period, self.found.bound);
         // Most often counting has said as much.
@@ -314,7 +314,7 @@ impl Run {
         self.bound_of_rules = self.found.bound;
     }
 
-    /// Searches all of a period. Returns true if that is decided.
+    /// Searches a period completely. Returns true if it is decided.
     fn decide(&mut self, period: u32, effort: u64, ask: Ask<'_>) -> Result<bool, Stopped> {
         let (before, effort) = (self.nodes() - self.search.nodes(), self.affordable(effort));
         let Self { search, found, .. } = self;
@@ -326,7 +326,7 @@ impl Run {
         self.take(period, decided)
     }
 
-    /// Decides by branchings along time: where there is little room beside what density asks for, they refute more.
+    /// Decides by branchings in the order of time, which refute more if density leaves little room.
     fn decide_in_time(&mut self, period: u32, effort: u64, ask: Ask<'_>) -> Result<bool, Stopped> {
         let (before, effort) = (self.nodes() - self.search.nodes(), self.affordable(effort));
         let Self { search, found, .. } = self;
@@ -334,7 +334,7 @@ impl Run {
         self.take(period, decided)
     }
 
-    /// Returns true if a schedule with this period, or a shorter one, is found soon.
+    /// Returns true if a short search finds a schedule with this period or a shorter one.
     fn finds(&mut self, period: u32, effort: u64, ask: Ask<'_>) -> Result<bool, Stopped> {
         let (before, effort) = (self.nodes() - self.search.nodes(), self.affordable(effort));
         let Self { search, found, .. } = self;
@@ -352,7 +352,7 @@ impl Run {
         effort.min(self.limit.saturating_sub(self.nodes()))
     }
 
-    /// Takes the outcome for a period. Returns true if it is decided.
+    /// Records the outcome for a period. Returns true if it is decided.
     fn take(&mut self, period: u32, decided: Decided) -> Result<bool, Stopped> {
         match decided {
             Decided::Found(fire) => {
@@ -366,15 +366,15 @@ impl Run {
         Ok(true)
     }
 
-    /// Takes the times at the shortest period at which they serve.
+    /// Records the times at the shortest period at which they serve.
     fn improve(&mut self, fire: FiringTimes) {
         self.found.period = period_of(self.search.problem(), &fire).max(self.found.bound);
         self.found.fire = fire;
     }
 }
 
-/// The times that come of these by turning, reflecting and exchanging the phases, the first as they are: where sensors
-/// differ, some serve at a shorter period than others.
+/// The images of these times under turning, reflecting and exchanging the phases, the identity first: if sensors
+/// differ, some serve at a shorter period.
 fn images(problem: &Problem, [a, b]: &FiringTimes) -> Vec<FiringTimes> {
     let sensors = problem.sensors();
     let turned = (0..sensors).map(|by| (0..sensors).map(|x| (x + by) % sensors).collect::<Vec<_>>());
@@ -410,7 +410,7 @@ fn period_of(problem: &Problem, [a, b]: &FiringTimes) -> u32 {
     period
 }
 
-/// The problem in coarser ticks, and how many fine ones they are, if all its times are multiples of that.
+/// The problem in coarser ticks, and their length in fine ticks, if all its times are multiples of that.
 fn in_coarse_ticks(problem: &Problem) -> Option<(Problem, u32)> {
     let divisor = |a: u32, b: u32| {
         let (mut a, mut b) = (a, b);

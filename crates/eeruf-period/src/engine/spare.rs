@@ -1,5 +1,5 @@
-//! The schedule with most to spare of those with one period: larger separations, then larger gaps, then longer
-//! windows, each by the same for all sensors.
+//! The schedule with most to spare among those of one period: larger separations, then larger gaps, then longer
+//! windows, each increased by the same for all sensors.
 
 use crate::engine::problem::Problem;
 use crate::engine::search::{Decided, FiringTimes, Search};
@@ -9,10 +9,9 @@ use crate::engine::search::{Decided, FiringTimes, Search};
 pub struct Spare {
     /// The firing times.
     pub fire: FiringTimes,
-    /// Ticks by which every separation, then every gap, then every window may grow, in this order: none grows at the
-    /// cost of an earlier one.
+    /// Ticks by which every separation, then every gap, then every window may grow; earlier ones have priority.
     pub more: [u32; 3],
-    /// True if no schedule of this period has more, of each.
+    /// True if no schedule of this period has more to spare.
     pub proven: [bool; 3],
     /// Nodes visited.
     pub nodes: u64,
@@ -30,8 +29,8 @@ fn harder(problem: &Problem, [separation, gap, window]: [u32; 3]) -> Problem {
     }
 }
 
-/// The schedule with most to spare of those with this period, beginning with one of them, by at most `budget` nodes, a
-/// third for each need, and as long as `go_on` says so: it is given the nodes so far.
+/// The schedule with most to spare among those with this period, beginning with a given one. It takes at most `budget`
+/// nodes, a third for each need, and stops when `go_on`, called with the nodes so far, returns false.
 #[must_use]
 pub fn most_to_spare(
     problem: &Problem,
@@ -49,7 +48,7 @@ pub fn most_to_spare(
     spare
 }
 
-/// Lets one need grow as far as it can, up to `most`. Returns true if it is proven that it can grow no further.
+/// Raises one need as far as possible, up to `most`. Returns true if it is proven that it can grow no further.
 fn grow(
     problem: &Problem,
     period: u32,

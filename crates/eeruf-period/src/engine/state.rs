@@ -12,28 +12,28 @@ pub(crate) struct State {
     pub(crate) low: Vec<Bound>,
     /// The sensors with a smaller |d|, as a bitmask.
     pub(crate) below: Vec<u64>,
-    /// Two of which the first fires before the second in phase a or in phase b, or in both.
+    /// Two sensors, the first of which fires before the second in at least one phase.
     pub(crate) reverse: Option<(usize, usize)>,
-    /// True if more is concluded than the rules of a certificate do.
+    /// True if the rules conclude more than those of a certificate.
     pub(crate) goes_further: bool,
-    /// The sensors that fire first, where branchings go along with time.
+    /// The sensors that fire first, if branchings follow the order of time.
     pub(crate) turns: Option<Turns>,
-    /// Values of `low` and `below` at each mark.
+    /// Saved values of `low` and `below` for each mark.
     trail: Vec<(Bound, u64)>,
-    /// State that the rules were last applied to in vain.
+    /// State to which the rules were last applied without a conclusion.
     pub(crate) seen: Seen,
 }
 
-/// The premises from which a rule had nothing to conclude: while they are the same, it has nothing now.
+/// The premises from which a rule concluded nothing: while they are unchanged, it need not run again.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Seen {
-    /// The matrix of the rule of precedence.
+    /// State of the matrix for the rule of precedence.
     pub(crate) precedence: u64,
-    /// The bounds on |d| and their order, of the rules of ranks and spacing.
+    /// State of the bounds on |d| and of their order, for the rules of ranks and spacing.
     sizes: Vec<(Bound, Bound, u64)>,
 }
 
-/// A point to which [`State::undo`] goes back.
+/// A point to which [`State::undo`] returns.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Mark {
     log: usize,
@@ -46,13 +46,13 @@ pub(crate) fn event(x: usize, phase: usize) -> usize {
     1 + 2 * x + phase
 }
 
-/// The firing whose event this is: sensor and phase. `None` for the start of the phases.
+/// The firing of an event: sensor and phase. `None` for the start of the phases.
 pub(crate) fn firing(event: usize) -> Option<(usize, usize)> {
     event.checked_sub(1).map(|event| (event / 2, event % 2))
 }
 
 impl State {
-    /// The knowledge of every schedule with a period below `period`.
+    /// State that holds for every schedule with a period below `period`.
     pub(crate) fn new(merged: &Merged, period: i32) -> Result<Self, Refuted> {
         let count = merged.count();
         // The period is at most `period - 1`, and firing times at most one less.
@@ -81,7 +81,7 @@ impl State {
         Ok(Self::of(bounds, low))
     }
 
-    /// Begins with these bounds, and nothing else known.
+    /// A state with these bounds, and nothing else known.
     pub(crate) fn of(bounds: Bounds, low: Vec<Bound>) -> Self {
         let below = vec![0; low.len()];
         Self {
@@ -96,7 +96,7 @@ impl State {
         }
     }
 
-    /// Keeps what is known, for [`undo`](Self::undo).
+    /// Saves the state for [`undo`](Self::undo).
     pub(crate) fn mark(&mut self) -> Mark {
         let placed = self.turns.as_ref().map_or(0, |turns| turns.placed.len());
         let mark = Mark { log: self.bounds.mark(), trail: self.trail.len(), placed };
@@ -104,7 +104,7 @@ impl State {
         mark
     }
 
-    /// Goes back to what was known at the mark, which stays. Later marks are void.
+    /// Restores the state at the mark, and keeps the mark. Later marks become invalid.
     pub(crate) fn undo(&mut self, mark: Mark) {
         self.bounds.undo(mark.log);
         if let Some(turns) = &mut self.turns {
@@ -117,20 +117,20 @@ impl State {
         self.trail.truncate(mark.trail + count);
     }
 
-    /// Goes back to what was known at the mark, and forgets it.
+    /// Restores the state at the mark, and removes the mark.
     pub(crate) fn drop_mark(&mut self, mark: Mark) {
         self.undo(mark);
         self.trail.truncate(mark.trail);
     }
 
-    /// Returns true if the bounds on |d| and their order are those from which nothing followed.
+    /// Returns true if nothing followed from the present bounds on |d| and their order.
     pub(crate) fn has_seen_sizes(&self) -> bool {
         let seen = &self.seen.sizes;
         seen.len() == self.low.len()
             && seen.iter().enumerate().all(|(x, seen)| *seen == (self.high(x), self.low[x], self.below[x]))
     }
 
-    /// Keeps the bounds on |d| and their order: nothing follows from them.
+    /// Notes that nothing follows from the present bounds on |d| and their order.
     pub(crate) fn see_sizes(&mut self) {
         let mut sizes = core::mem::take(&mut self.seen.sizes);
         sizes.clear();

@@ -1,5 +1,5 @@
-//! Assumptions that the root may make because schedules come in symmetric pairs or families;
-//! docs/reference/certificate.md has the proofs.
+//! Assumptions at the root that hold for one of each family of symmetric schedules; docs/reference/certificate.md has
+//! the proofs.
 
 use crate::engine::bounds::Refuted;
 use crate::engine::problem::{Merged, Problem};
@@ -7,25 +7,26 @@ use crate::engine::rules::propagate;
 use crate::engine::state::{State, event};
 use crate::engine::turns::Turns;
 
-/// A sensor that may be assumed to have the greatest |d| of all that permutations of the problem take it to.
+/// A family of sensors that permutations of the problem map to each other, one of which may be assumed to have the
+/// greatest |d|.
 #[derive(Clone, Debug)]
 pub(crate) struct Family {
     pub(crate) generators: Vec<Vec<usize>>,
     pub(crate) greatest: usize,
-    /// The sensors it is taken to, itself among them, in ascending order.
+    /// The images of that sensor, itself included, in ascending order.
     orbit: Vec<usize>,
 }
 
-/// The assumptions for one problem: turns, reflections and exchanges of two sensors as far as it allows them, the
-/// exchange of the phases, and the reversal of time.
+/// The assumptions for one problem: turns, reflections and exchanges of two sensors that it allows, the exchange of the
+/// phases, and the reversal of time.
 #[derive(Clone, Debug)]
 pub(crate) struct Assumptions {
     pub(crate) families: Vec<Family>,
-    /// Two of which the first fires before the second in phase a or in phase b.
+    /// Two sensors, the first of which fires before the second in at least one phase.
     pub(crate) reverse: Option<(usize, usize)>,
 }
 
-/// The sensor whose d may be assumed not to be negative.
+/// The sensor whose d may be assumed not negative.
 pub(crate) const POSITIVE: usize = 0;
 
 impl Assumptions {
@@ -82,8 +83,8 @@ impl Assumptions {
         Ok(root)
     }
 
-    /// Begins with other assumptions, for branchings along time: the first of each family is the first to fire of it
-    /// in phase a, and the first of all no later than any of its family in phase b.
+    /// The state of the root for branchings in the order of time: the first sensor of each family fires first of it in
+    /// phase a, and the first sensor of all no later than any of its family in phase b.
     pub(crate) fn root_in_time(&self, merged: &Merged, bound: u32) -> Result<State, Refuted> {
         let mut root = State::new(merged, bound as i32)?;
         for (number, family) in self.families.iter().enumerate() {
@@ -131,7 +132,7 @@ fn gaps(problem: &Problem) -> Vec<(u32, u32)> {
     table
 }
 
-/// Returns true if the permutation `image` takes the problem, with this table of gaps, to itself.
+/// Returns true if the permutation `image` maps the problem, with this table of gaps, to itself.
 fn is_symmetry(problem: &Problem, image: &[usize], table: &[(u32, u32)]) -> bool {
     let sensors = problem.sensors();
     let alike = |x: usize| {
@@ -143,7 +144,7 @@ fn is_symmetry(problem: &Problem, image: &[usize], table: &[(u32, u32)]) -> bool
         && problem.together.iter().all(|group| problem.together.contains(&taken(group)))
 }
 
-/// Returns true if the permutation `image` leaves what was assumed earlier as it is.
+/// Returns true if the permutation `image` preserves earlier assumptions.
 fn leaves(image: &[usize], earlier: &[Family]) -> bool {
     let taken = |set: &[usize]| sorted(set.iter().map(|&sensor| image[sensor]));
     earlier.iter().all(|known| image[known.greatest] == known.greatest && taken(&known.orbit) == known.orbit)
@@ -155,7 +156,7 @@ fn sorted(sensors: impl Iterator<Item = usize>) -> Vec<usize> {
     sensors
 }
 
-/// All that the generators take the sensor to, again and again, in ascending order.
+/// The orbit of a sensor under the generators, in ascending order.
 fn orbit(sensor: usize, generators: &[Vec<usize>]) -> Vec<usize> {
     let mut orbit = vec![sensor];
     let mut next = 0;

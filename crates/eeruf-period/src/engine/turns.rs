@@ -1,4 +1,4 @@
-//! Firings in the order of time: which sensor fires next, and what its place says of its times.
+//! Firings in the order of time: which sensor fires next, and the bounds that follow from its place.
 
 use crate::engine::bounds::Refuted;
 use crate::engine::counting::members;
@@ -6,7 +6,7 @@ use crate::engine::problem::Merged;
 use crate::engine::sets::{Pace, cover, interval_of};
 use crate::engine::state::{State, event};
 
-/// A set of sensors, and the least time from a firing of theirs to the one a number of steps later.
+/// A set of sensors, and the least time between their firings by the number of steps.
 #[derive(Clone, Debug)]
 struct Set {
     members: u64,
@@ -23,7 +23,7 @@ pub(crate) struct Turns {
 }
 
 impl Turns {
-    /// None yet, of a schedule with this period.
+    /// No firings yet, for a schedule with this period.
     pub(crate) fn new(merged: &Merged, period: i32) -> Self {
         let count = merged.count();
         let (cliques, times) = cover(merged);
@@ -42,7 +42,7 @@ impl Turns {
         Self { sets, period, count, placed: Vec::new() }
     }
 
-    /// The phase of the next. `None` if all have fired twice.
+    /// The phase of the next firing. `None` if all sensors have fired twice.
     fn phase(&self) -> Option<usize> {
         (self.placed.len() < 2 * self.count).then_some(self.placed.len() / self.count)
     }
@@ -55,7 +55,7 @@ impl Turns {
     }
 }
 
-/// Learns that of those left x fires first: of those that fire at the same instant the one with the lowest number.
+/// Adds that sensor x fires first of those left; at the same instant the one with the lowest number counts as first.
 pub(crate) fn place(state: &mut State, x: usize) -> Result<(), Refuted> {
     let State { turns: Some(turns), bounds, .. } = state else { return Ok(()) };
     let Some(phase) = turns.phase() else { return Ok(()) };

@@ -1,5 +1,5 @@
-//! Rings whose sensors are alike, with a slow, obvious judge of firing times, and plain nested loops over them. It
-//! shares nothing with the search.
+//! Rings of identical sensors, with a slow, obvious judge of firing times and nested loops over them. It shares nothing
+//! with the search.
 
 #![allow(dead_code)]
 
@@ -23,7 +23,7 @@ impl Alike<'_> {
         self.conflicts.len()
     }
 
-    /// Returns the problem as the search has it, to which no interval is no conflict, and any window a tick at least.
+    /// Returns the problem in the search's form, in which a conflict needs an interval and a window is at least a tick.
     pub(crate) fn problem(&self) -> Problem {
         let none = vec![0; self.sensors()];
         let conflicts = if self.interval > 0 { self.conflicts } else { &none };
@@ -58,7 +58,7 @@ pub(crate) fn conflicts_where(sensors: usize, close: impl Fn(usize, usize) -> bo
     (0..sensors).map(|x| (0..sensors).filter(|&y| conflict(x, y)).map(|y| 1 << y).sum()).collect()
 }
 
-/// Violations of a schedule: each need is checked as it is written, pair by pair.
+/// Violations of a schedule: each need is checked as defined, pair by pair.
 pub(crate) fn check(problem: &Alike<'_>, period: u32, a: &[u32], b: &[u32]) -> Result<(), String> {
     let k = problem.sensors();
     if a.len() != k || b.len() != k {

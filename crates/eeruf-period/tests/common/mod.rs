@@ -41,7 +41,7 @@ pub(crate) fn verdicts_of(checker: &Path, name: &str, certificates: &[String]) -
     verdicts
 }
 
-/// Has the checker accept all these certificates. Returns their claims in its words.
+/// Checks that the checker accepts all these certificates, and returns its words for their claims.
 pub(crate) fn accepted(name: &str, certificates: &[String]) -> Vec<String> {
     let verdicts = verdicts_of(&checker(), name, certificates);
     for (verdict, text) in verdicts.iter().zip(certificates) {
@@ -72,7 +72,7 @@ pub(crate) fn claim_of(certificate: &str) -> Claim {
     Claim { problem, period: one("period")[0], fire, bound: one("no_period_below")[0] }
 }
 
-/// The number of nodes of a certificate's tree, about: two for each branching, as many as sensors if one fires next.
+/// Approximate number of nodes of a certificate's tree: two for each branching, or as many as sensors for `next`.
 pub(crate) fn nodes_of(certificate: &str) -> usize {
     let sensors = claim_of(certificate).problem.sensors();
     let nodes = |line: &str| match line.split(' ').next() {
@@ -83,7 +83,7 @@ pub(crate) fn nodes_of(certificate: &str) -> usize {
     certificate.lines().map(nodes).sum::<usize>() + 1
 }
 
-/// The certificates that the checker reads in a moment; `EERUF_NODES` sets how many nodes they may have.
+/// The certificates that the checker reads quickly; `EERUF_NODES` sets how many nodes they may have.
 pub(crate) fn small(certificates: Vec<String>) -> Vec<String> {
     let most = from_environment("EERUF_NODES", 500);
     let all = certificates.len();
@@ -93,7 +93,7 @@ pub(crate) fn small(certificates: Vec<String>) -> Vec<String> {
     small
 }
 
-/// A number from the environment, or the usual one.
+/// A number from the environment, or its default.
 pub(crate) fn from_environment(name: &str, usual: u64) -> u64 {
     std::env::var(name).map_or(usual, |number| number.parse().expect("a number"))
 }
@@ -110,7 +110,7 @@ impl Random {
         ((self.0.wrapping_mul(0x2545_F491_4F6C_DD1D) >> 33) % u64::from(end)) as u32
     }
 
-    /// A number up to this.
+    /// A number from 0 to this.
     pub(crate) fn up_to(&mut self, most: u32) -> u32 {
         self.below(most + 1)
     }
@@ -121,7 +121,7 @@ impl Random {
     }
 }
 
-/// A tiny problem: even or uneven, with shared lines, groups and stale echoes now and then.
+/// A tiny random problem: even or uneven, sometimes with shared lines, groups and stale echoes.
 pub(crate) fn random_problem(random: &mut Random) -> Problem {
     for _ in 0..10 {
         random.below(2);
@@ -182,7 +182,7 @@ fn extend(problem: &Problem, period: u32, fire: &mut Vec<(u32, u32)>) -> bool {
     false
 }
 
-/// Returns true if the last sensor keeps the definition, by itself and with all before it.
+/// Returns true if the last sensor meets the definition, by itself and with all before it.
 fn last_fits(problem: &Problem, period: u32, fire: &[(u32, u32)]) -> bool {
     let y = fire.len() - 1;
     let d = |x: usize| i64::from(fire[x].0) - i64::from(fire[x].1);
@@ -200,7 +200,8 @@ fn last_fits(problem: &Problem, period: u32, fire: &[(u32, u32)]) -> bool {
     })
 }
 
-/// Lays out five periods of both sensors on one line of time, and looks at each firing's followers.
+/// Returns true if two sensors keep their gaps: it lays out five periods of both on one line of time, and checks what
+/// follows each firing.
 fn gaps_fit(problem: &Problem, period: u32, fire: &[(u32, u32)], x: usize, y: usize) -> bool {
     let line = |x: usize| -> Vec<u32> {
         (0..5).map(|n| n * period + if n % 2 == 0 { fire[x].0 } else { fire[x].1 }).collect()
@@ -214,7 +215,7 @@ fn gaps_fit(problem: &Problem, period: u32, fire: &[(u32, u32)], x: usize, y: us
     clear(&line(x), &line(y), after_x) && clear(&line(y), &line(x), after_y)
 }
 
-/// The claims of tests/data/shortest-periods.json, with a name each; all times `scale` times as many ticks.
+/// The claims of tests/data/shortest-periods.json with their names; all times multiplied by `scale`.
 pub(crate) fn table(scale: u32) -> Vec<(String, Claim)> {
     let text = include_str!("../../../../tests/data/shortest-periods.json");
     text.split("{\"sensors\"").skip(1).map(|case| claim(&format!("\"sensors\"{case}"), scale)).collect()

@@ -1,11 +1,11 @@
-//! True if a schedule exists, by going through firing times: no thought beyond what each setting leaves to the others.
+//! Decides by brute force over firing times if a schedule exists; its only shortcut is to drop pairs that no longer
+//! fit.
 
 /// The longest period that is judged.
 pub(crate) const MOST_TICKS: u32 = 40;
-/// Times open to one sensor at most: `MOST_TICKS` rows, one for each time in phase a, with a bit for each time in phase
-/// b.
+/// Possible times of one sensor: `MOST_TICKS` rows, one for each time in phase a, with a bit for each time in phase b.
 type Times = [u64; MOST_TICKS as usize];
-/// A question that takes the brute force more steps than this is left unjudged, and few may be.
+/// Number of steps after which the brute force leaves a question open; few may be.
 const MOST_STEPS: u64 = 200_000;
 
 /// The needs of a problem at a period, all signed so that they can be written as in the definition.
@@ -35,8 +35,8 @@ impl Needs {
         ((ax - bx).abs() - (ay - by).abs()).abs() >= self.separation
     }
 
-    /// Returns true if two firings, `s` in one sensor's phase and `t` in the other's, are far enough apart. `other`
-    /// says that the phases differ, and then one comes a period after the other, whichever is first.
+    /// Returns true if two firings, `s` of one sensor and `t` of the other, are far enough apart. With `other` their
+    /// phases differ, and one comes a period after the other, whichever is first.
     fn apart(&self, s: i32, t: i32, other: bool) -> bool {
         if other {
             self.period + t - s >= self.interval && self.period + s - t >= self.interval
@@ -160,8 +160,8 @@ impl BruteForce<'_> {
         self.needs.conflicts[x] & !(1 << y) == self.needs.conflicts[y] & !(1 << x)
     }
 
-    /// Returns true if the sensors that are left may find enough separated |d| between them, and those of them that all
-    /// conflict with one another enough times in each phase.
+    /// Returns true if the remaining sensors have enough separated |d|, and those that all conflict with one another
+    /// enough times in each phase.
     fn has_room(&self, left: &[usize], open: &[Times]) -> bool {
         let sizes = |s: usize, row: u64| row >> s | row.reverse_bits() >> (63 - s);
         let in_a = |s: usize, row: u64| u64::from(row != 0) << s;
@@ -183,8 +183,8 @@ impl BruteForce<'_> {
     }
 }
 
-/// Number of these numbers that can be chosen so that each is `apart` or more from the next: from small to large,
-/// each as soon as it can be.
+/// Greatest number of these values that can be chosen at least `apart` from each other: in ascending order, each as
+/// early as possible.
 fn most(numbers: u64, apart: i32) -> usize {
     if apart == 0 {
         return usize::MAX;

@@ -1,13 +1,13 @@
-//! The bytes of a log, and a place in a slice of them, from which numbers and texts are read; nothing beyond its end.
+//! The bytes of a log, and a reader of numbers and texts from a slice of them, which never reads beyond its end.
 
 use std::io::{Read, Seek};
 
-/// The bytes of a log that can be read at any place.
+/// The bytes of a log, readable at any place.
 pub(crate) trait Input: Read + Seek {}
 
 impl<T: Read + Seek> Input for T {}
 
-/// In which order the bytes of a number come.
+/// Byte order of a number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Order {
     Little,
@@ -37,7 +37,7 @@ impl<'a> Bytes<'a> {
         Some(taken)
     }
 
-    /// Skips to the next multiple of `size` from the slice's start.
+    /// Skips to the next multiple of `size`, counted from the slice's start.
     pub(crate) fn align(&mut self, size: usize) -> Option<()> {
         self.take(self.at.next_multiple_of(size) - self.at).map(drop)
     }
@@ -76,7 +76,7 @@ impl<'a> Bytes<'a> {
         self.take(usize::try_from(length).ok()?)
     }
 
-    /// A text after its length in bytes, as `u32`; bytes that are no text are replaced.
+    /// A text after its length in bytes, as `u32`; invalid bytes are replaced.
     pub(crate) fn text(&mut self) -> Option<String> {
         self.counted().map(|bytes| String::from_utf8_lossy(bytes).into_owned())
     }

@@ -1,4 +1,4 @@
-//! Logs of every form, by files, streams, and what can be read at any place.
+//! Logs of every form, from files, streams and sources with random access.
 
 use std::fs::File;
 use std::io::{self, BufReader, Read, Seek};
@@ -13,14 +13,14 @@ use crate::sink::{Report, Sink};
 use crate::{bytes, flight, mcap, ros1, rosbag2, serial, text};
 
 /// Reads a log from beginning to end, and calls `each` with the report so far, which has the sensors, and each reading,
-/// in the order in which they were recorded. The form shows in the first bytes, also of a file that is packed as a
-/// whole, else in the ending of its name; of text, in its lines. [`Report::guesses`] lists what was guessed.
+/// in the order in which they were recorded. The form is recognised by the first bytes, even of a file that is packed
+/// as a whole, or by the ending of its name; that of text by its lines. [`Report::guesses`] lists what was guessed.
 ///
 /// A log without sensors is no error: [`Report::sensors`] is empty then, and [`Report::skipped`] says what was found.
 ///
 /// # Errors
-/// A file that cannot be opened, a folder without bag files, a form that is known and not read, or an option that does
-/// not fit the log. Of a log that is damaged, what can be read is.
+/// A file that cannot be opened, a folder without bag files, a known form that cannot be read, or an option that does
+/// not fit the log. The readable parts of a damaged log are read.
 pub fn read_log(
     file: &Path,
     options: &Options,
@@ -53,8 +53,8 @@ pub fn read_log(
     Ok(sink.finish(file))
 }
 
-/// Reads a log that is no file of this machine, as [`read_log`] does a file; `name` stands in errors, and its ending
-/// helps where the first bytes do not show the form. An `SQLite` file is copied into a temporary one first.
+/// Reads a log that is not a local file, like [`read_log`]; `name` is used in errors, and its ending helps if the first
+/// bytes do not show the form. An `SQLite` file is copied into a temporary one first.
 ///
 /// # Errors
 /// As [`read_log`].
@@ -73,8 +73,8 @@ pub fn read_from(
     Ok(sink.finish(name))
 }
 
-/// Reads a log that comes once and in order, as from a pipe, as [`read_log`] does a file; `name` stands in errors. Text
-/// and frames of the serial line are read as they come; a bag is copied into a temporary file first.
+/// Reads a log from a stream such as a pipe, like [`read_log`]; `name` is used in errors. Text and frames of the serial
+/// line are read as they arrive; a bag is copied into a temporary file first.
 ///
 /// # Errors
 /// As [`read_log`].
@@ -92,7 +92,7 @@ pub fn read_stream(
     Ok(sink.finish(name))
 }
 
-/// Reads a log of this form that can be read at any place; `name` stands in errors.
+/// Reads a log of this form from a source with random access; `name` is used in errors.
 fn read_anywhere(
     input: &mut dyn bytes::Input,
     name: &Path,
@@ -134,7 +134,7 @@ fn read_in_order(
     }
 }
 
-/// Reads a bag by way of a temporary file; the error after which there was no more of it.
+/// Reads a bag by way of a temporary file; returns the error that ended the bag, if any.
 fn read_copy(
     input: &mut dyn Read,
     name: &Path,

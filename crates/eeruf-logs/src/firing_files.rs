@@ -1,4 +1,4 @@
-//! Files of firings, whatever their format.
+//! Files of firings, in any format.
 
 use std::fs::File;
 use std::io::{self, BufReader, Read};
@@ -9,7 +9,7 @@ use crate::form::{self, Form, UntilError};
 use crate::{firing_messages, firing_text, serial};
 use eeruf_files::FileError;
 
-/// The error for a log of ranges where one of firings is expected.
+/// The error for a log of ranges instead of firings.
 fn not_firings(file: &Path, form: &str) -> FileError {
     let message = format!(
         "{form}, which holds ranges and no firings; expected text with sensor, fired_us, period, phase and t_echo_us, \
@@ -19,7 +19,7 @@ fn not_firings(file: &Path, form: &str) -> FileError {
 }
 
 impl FiringLog {
-    /// Reads a log, text, MCAP or frames of the serial line, as its first bytes say; packed or not.
+    /// Reads a log, text, MCAP or frames of the serial line, recognised by its first bytes, packed or not.
     ///
     /// # Errors
     /// A file that cannot be read, columns that are missing, or text without a whole line; MCAP in which there is no
@@ -31,8 +31,8 @@ impl FiringLog {
         Self::read_from(File::open(file).map_err(|error| FileError::reading(file, &error))?, file)
     }
 
-    /// Reads a log from its beginning to its end, as [`FiringLog::read`] does a file; `name` stands in errors, and its
-    /// ending helps where the first bytes do not show the form.
+    /// Reads a log from a stream, like [`FiringLog::read`]; `name` is used in errors, and its ending helps if the first
+    /// bytes do not show the form.
     ///
     /// # Errors
     /// As [`FiringLog::read`].

@@ -51,7 +51,7 @@ fn of_cdr(data: &[u8]) -> Option<(Firing, String)> {
     Some((Firing { sensor: sensor?, fired_us, period, phase, t_echo_us, reading, g_us_ms }, clock))
 }
 
-/// Reads the firings of a file, as far as it is whole; `file` stands in errors.
+/// Reads the firings of a file, up to damage; `file` is used in errors.
 pub(crate) fn read(input: impl Read, file: &Path) -> Result<FiringLog, FileError> {
     let mut input = BufReader::new(input);
     let mut reader = LinearReader::new_with_options(LinearReaderOptions::default().with_emit_chunks(false));

@@ -1,4 +1,4 @@
-//! Firing logs in text: tables with any separator. A line that is damaged gives no firing, and is named.
+//! Firing logs in text: tables with any separator. A damaged line yields no firing, and is named.
 
 use std::io::Read;
 use std::path::Path;
@@ -17,12 +17,12 @@ const NEEDED: [&str; 5] = ["sensor", "fired_us", "period", "phase", "t_echo_us"]
 /// The columns that are read.
 const NAMES: [&str; 8] = ["sensor", "fired_us", "period", "phase", "t_echo_us", "reading", "sends", "g"];
 
-/// The kind that logs spell so.
+/// The kind with this spelling in logs.
 pub(crate) fn kind_of(spelled: &str) -> Option<ReadingKind> {
     ReadingKind::ALL.into_iter().find(|kind| kind.as_str() == spelled)
 }
 
-/// Where the columns stand.
+/// The columns of a table.
 struct Header {
     names: Vec<String>,
     separator: Separator,
@@ -33,11 +33,11 @@ struct Header {
     motion: Option<usize>,
 }
 
-/// The reason that a line gives no firing: a column, if it is one, and what is wrong.
+/// The reason why a line yields no firing: a column, if one is at fault, and what is wrong.
 type Wrong = (Option<usize>, String);
 
 impl Header {
-    /// By the first line that is no comment.
+    /// Columns from the first line that is not a comment.
     fn of(sample: &[Line]) -> Result<Self, String> {
         let first = sample.iter().find(|line| !is_comment(&line.text)).map_or("", |line| line.text.trim());
         let stripped = prefix(first).map(|(_, rest)| rest).filter(|rest| rest.to_lowercase().contains("sensor"));
@@ -64,7 +64,7 @@ impl Header {
         Ok(Self { separator, has_prefix, needed, reading, sends, motion, names })
     }
 
-    /// The cells of a line; nothing for the header itself.
+    /// The cells of a line; `None` for the header itself.
     fn cells(&self, line: &Line) -> Result<Option<Vec<String>>, Wrong> {
         let wrong = |why: String| (None, why);
         if line.is_too_long || line.text.contains('\u{fffd}') {
@@ -127,12 +127,12 @@ impl Header {
     }
 }
 
-/// A column's name as it is compared.
+/// A column's name in the form for comparisons.
 fn same_name(name: &str) -> String {
     name.trim().trim_start_matches('#').trim().to_lowercase().replace([' ', '-'], "_")
 }
 
-/// Reads a log in text; `file` stands in errors.
+/// Reads a log in text; `file` is used in errors.
 pub(crate) fn read(input: impl Read, file: &Path) -> Result<FiringLog, FileError> {
     let failed = |error: std::io::Error| FileError::reading(file, &error);
     let mut source = Source::new(Box::new(input)).map_err(failed)?;
@@ -159,10 +159,10 @@ struct Rows {
     clock: String,
     firings: Vec<Firing>,
     listened: Vec<Firing>,
-    /// A clock of 32 bits has wrapped so often, times 2^32.
+    /// Number of wraps of a 32-bit clock, times 2^32.
     wraps: i64,
     last: i64,
-    /// The longest last cell.
+    /// Length of the longest last cell.
     longest: usize,
     damaged: u64,
     first_damage: Option<(u64, String)>,

@@ -1,5 +1,5 @@
-//! Logs of firings: for each, who fired when, and what was heard. `study --log` writes them, firmware can, and
-//! [`diagnose`](crate::diagnose()) reads them; so do surveys.
+//! Logs of firings: for each, the sensor, the time and the echo. `study --log` and firmware write them;
+//! [`diagnose`](crate::diagnose()) and surveys read them.
 //!
 //! ```text
 //! # clock: simulation
@@ -8,13 +8,13 @@
 //! 4,15000,0,0,,no_echo
 //! ```
 //!
-//! A table with these columns in any order and any separator; others are ignored, and lines
-//! that are damaged are left out and named. Times are in microseconds of one clock, which the first
-//! line may name; one of 32 bits may wrap. `t_echo_us` is the raw echo time, from firing to the first edge, empty
-//! without echo. `reading` is what the ring made of it (`rejected`, `accepted`, `ambiguous`, ..) and may be missing.
-//! Sensors, periods and phases count from 0. `g` may say how fast readings changed with the robot's motion, in
-//! microseconds for each millisecond: 2 (v + w 0.5 m) over the speed of sound. Rows may come in any order that is at
-//! most 2^31 us out. Where `sends` is 0 the sensor only listened from then on, as some can.
+//! A table with these columns in any order and any separator; others are ignored, and lines that are damaged are left
+//! out and named. Times are in microseconds of one clock, which the first line may name; one of 32 bits may wrap.
+//! `t_echo_us` is the raw echo time, from firing to the first edge, empty without echo. `reading` is the ring's verdict
+//! (`rejected`, `accepted`, `ambiguous`, ..) and may be missing. Sensors, periods and phases count from 0. `g` may say
+//! how fast readings changed with the robot's motion, in microseconds for each millisecond: 2 (v + w 0.5 m) over the
+//! speed of sound. Rows may be out of order by at most 2^31 us. If `sends` is 0, the sensor only listened from then on,
+//! as some can.
 //!
 //! The same in MCAP is a message `eeruf_msgs/msg/Firing` of ROS 2 for each row, which
 //! [`McapWriter::firing`](crate::McapWriter::firing) writes.
@@ -51,15 +51,15 @@ pub struct FiringLog {
     pub clock: String,
     /// The firings, in order of time.
     pub firings: Vec<Firing>,
-    /// Sounds heard by sensors that listened without firing: `fired_us` is when they began to.
+    /// Readings of sensors that listened without firing: `fired_us` is the start of listening.
     pub listened: Vec<Firing>,
     /// The part of the file that could not be read, if any.
     pub damage: Option<String>,
 }
 
 impl FiringLog {
-    /// Returns true if the log says that the robot drives: in a fifth of the readings with a `g` or more it was some
-    /// 3 cm/s or faster.
+    /// Returns true if the log shows that the robot drives: at least a fifth of the readings with a `g` have about 3
+    /// cm/s or more.
     pub(crate) fn drives(&self) -> bool {
         const MOVES_US_MS: f32 = 0.17;
         const DRIVES: f64 = 0.2;
@@ -91,15 +91,15 @@ impl fmt::Display for Firing {
 }
 
 impl FiringLog {
-    /// Puts firings in order of time.
+    /// A log with these firings, sorted by time.
     pub fn new(clock: &str, mut firings: Vec<Firing>) -> Self {
         firings.sort_by_key(|firing| firing.fired_us);
         Self { clock: clock.to_owned(), firings, ..Self::default() }
     }
 
-    /// Warnings of times that are legal and implausible, milliseconds for microseconds.
+    /// Warnings about legal but implausible times, such as milliseconds for microseconds.
     pub fn doubts(&self) -> Vec<String> {
-        /// Sound that comes sooner is ringing of the transducer; sensors of a ring fire less often.
+        /// Shortest plausible times: sooner sound is ringing of the transducer, and sensors of a ring fire less often.
         const LEAST_US: i64 = 200;
         let echo = self.firings.iter().filter_map(|firing| firing.t_echo_us).max().map(i64::from);
         let span = self.firings.last().zip(self.firings.first()).map(|(last, first)| last.fired_us - first.fired_us);
@@ -139,7 +139,7 @@ impl FiringLog {
         Ok(())
     }
 
-    /// Number of sensors the ring has, as far as the log shows: one more than the highest number.
+    /// Number of sensors of the ring, judging by the log: one more than the highest number.
     pub fn sensors(&self) -> usize {
         let rows = self.firings.iter().chain(&self.listened);
         rows.map(|firing| usize::from(firing.sensor) + 1).max().unwrap_or(0)

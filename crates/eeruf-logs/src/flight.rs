@@ -1,4 +1,4 @@
-//! Flight logs, of which the distance sensors matter: `ArduPilot`'s `.BIN`, `MAVLink`'s `.tlog`, `PX4`'s `.ulg`.
+//! Distance sensors in flight logs: `ArduPilot`'s `.BIN`, `MAVLink`'s `.tlog`, `PX4`'s `.ulg`.
 
 use std::collections::{BTreeMap, HashMap};
 use std::io::{self, Read};
@@ -10,7 +10,7 @@ use crate::bytes::{Bytes, Order};
 use crate::reading::{LogReading, Sensor};
 use crate::sink::{Sink, Skipped};
 
-/// A flight log's form.
+/// A form of flight log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Flight {
     DataFlash,
@@ -41,7 +41,7 @@ impl Flight {
 struct Distance {
     at_us: u64,
     instance: u8,
-    /// The range, with what REP 117 makes of infinities; nothing for what does not measure by sound.
+    /// The range, with infinities as in REP 117; `None` for sensors that do not measure by sound.
     range_m: Option<f64>,
     max_m: f64,
 }
@@ -53,7 +53,7 @@ struct Input<'a> {
 }
 
 impl Input<'_> {
-    /// As many bytes; nothing at the end, with fewer of them or none.
+    /// The next bytes, this many; `None` at the end, if fewer are left.
     fn take(&mut self, length: usize) -> io::Result<Option<Vec<u8>>> {
         let mut bytes = vec![];
         self.at += (&mut *self.input).take(length as u64).read_to_end(&mut bytes)? as u64;
@@ -108,7 +108,7 @@ pub(crate) fn read(flight: Flight, input: &mut dyn Read, file: &Path, sink: &mut
 /// The fields of a message by their names, each with its type.
 type Fields = Vec<(String, String)>;
 
-/// The size of a type, by its letter in ArduPilot's and its name in PX4's logs.
+/// The size of a type, given by its letter in ArduPilot's logs or its name in PX4's.
 fn size(kind: &str) -> Option<usize> {
     Some(match kind {
         "b" | "B" | "M" | "int8_t" | "uint8_t" | "bool" | "char" => 1,
@@ -153,7 +153,7 @@ fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes.split(|&byte| byte == 0).next().unwrap_or_default()).into_owned()
 }
 
-/// ArduPilot: messages behind `a3 95`, whose formats come before them. The answer is how many bytes were passed over.
+/// Reads ArduPilot's messages, each after `a3 95` and after its format. Returns the number of skipped bytes.
 fn data_flash(input: &mut Input<'_>, each: &mut dyn FnMut(Distance)) -> io::Result<u64> {
     const FORMAT: u8 = 0x80;
     let mut formats = HashMap::from([(FORMAT, (89, String::new(), vec![]))]);
@@ -191,10 +191,10 @@ fn data_flash(input: &mut Input<'_>, each: &mut dyn FnMut(Distance)) -> io::Resu
     Ok(passed)
 }
 
-/// `MAVLink`: each frame of version 1 or 2 behind its time.
+/// Reads `MAVLink`: frames of version 1 or 2, each after its time.
 fn telemetry(input: &mut Input<'_>, each: &mut dyn FnMut(Distance)) -> io::Result<u64> {
     const DISTANCE_SENSOR: u32 = 132;
-    /// The byte of its definition that its check sum includes.
+    /// The byte of the message's definition that its check sum includes.
     const EXTRA: u8 = 85;
     let (mut passed, mut head) = (0, vec![]);
     loop {
@@ -242,7 +242,7 @@ fn checksum(bytes: &[u8]) -> u16 {
     })
 }
 
-/// PX4: messages behind their size and kind.
+/// Reads PX4's messages, each after its size and kind.
 fn ulog(input: &mut Input<'_>, each: &mut dyn FnMut(Distance)) -> io::Result<u64> {
     let (mut fields, mut instances): (Fields, HashMap<u16, u8>) = (vec![], HashMap::new());
     _ = input.take(16)?;

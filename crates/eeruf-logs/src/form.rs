@@ -1,5 +1,5 @@
-//! The form of a file by its first bytes: what is read, what is unpacked first, and what another tool has to turn
-//! into a form that is read.
+//! The form of a file by its first bytes: forms that are read, forms that are unpacked first, and forms that another
+//! tool must convert.
 
 use std::fs::File;
 use std::io::{self, Read, Write as _};
@@ -32,7 +32,7 @@ pub(crate) enum Packing {
     Zstd,
 }
 
-/// A form that is named and not read: its name, and the function of pandas that reads it, if one does.
+/// A form that is recognised but not read: its name, and the function of pandas that reads it, if there is one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Foreign(&'static str, &'static str);
 
@@ -46,7 +46,7 @@ const FRAMES: [(&[u8], Foreign); 4] = [
 ];
 
 impl Form {
-    /// Recognises a form by the first bytes of a file, else by the ending of its name.
+    /// Recognises a form by the first bytes of a file, or by the ending of its name.
     pub(crate) fn of(first: &[u8], file: &Path) -> Self {
         let ending = file.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
         let starts = |magic: &[u8]| first.starts_with(magic);
@@ -106,14 +106,14 @@ impl Form {
     }
 }
 
-/// As many bytes as show the form.
+/// Enough bytes to recognise the form.
 pub(crate) fn first_bytes(input: impl Read) -> io::Result<Vec<u8>> {
     let mut first = Vec::new();
     input.take(512).read_to_end(&mut first)?;
     Ok(first)
 }
 
-/// Text of no encoding has many bytes below the space. UTF-16 has zeroes at every other place.
+/// Returns true for bytes that are not text: many are below the space. In UTF-16 every other byte is zero.
 fn is_binary(first: &[u8]) -> bool {
     if matches!(first, [0xff, 0xfe, ..] | [0xfe, 0xff, ..]) {
         return false;
@@ -147,7 +147,7 @@ impl Packing {
     }
 }
 
-/// Gives what was unpacked before an error, and keeps the error.
+/// A reader that yields the bytes unpacked before an error, and keeps the error.
 pub(crate) struct UntilError<'a, R> {
     input: R,
     error: &'a mut Option<io::Error>,
@@ -174,10 +174,10 @@ impl<R: Read> Read for UntilError<'_, R> {
     }
 }
 
-/// The largest bag that is unpacked to a temporary file.
+/// The largest bag that is unpacked into a temporary file.
 const LARGEST_BAG: u64 = 1 << 36;
 
-/// Unpacks a bag into a file that is deleted when dropped; says what could not be unpacked.
+/// Unpacks a bag into a file that is deleted when dropped; returns the damage.
 pub(crate) fn to_file(input: impl Read, ending: &str) -> io::Result<(tempfile::NamedTempFile, Option<io::Error>)> {
     let mut file = tempfile::Builder::new().prefix("eeruf-").suffix(&format!(".{ending}")).tempfile()?;
     let mut error = None;
@@ -187,7 +187,8 @@ pub(crate) fn to_file(input: impl Read, ending: &str) -> io::Result<(tempfile::N
 }
 
 impl Foreign {
-    /// Says what the file is, and how to turn it into what is read: lines of Python, parted by semicolons.
+    /// The message about a file that cannot be read: its form, and lines of Python for converting it, separated by
+    /// semicolons.
     pub(crate) fn refuse(self, file: &Path) -> FileError {
         let path = file.display().to_string().replace(['\\', '"'], "_");
         let Self(name, read) = self;

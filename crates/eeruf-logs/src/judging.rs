@@ -1,4 +1,4 @@
-//! A judge over the ranges of a log, and what it made of them, counted and written.
+//! A judge of the ranges of a log, with counts and an output file.
 
 use std::path::{Path, PathBuf};
 
@@ -9,27 +9,27 @@ use eeruf_files::FileError;
 use crate::reading::{Echo, LogReading, Sensor};
 use crate::write::McapWriter;
 
-/// A rule for ranges, each sensor by itself: consecutive readings agree.
+/// A judge that compares consecutive readings of each sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct RangeJudge {
-    /// The largest difference of two that agree.
+    /// The largest difference of two readings that agree.
     pub t_delta: Micros,
     /// Number of readings that must agree, 2 to 8.
     pub consecutive: u8,
 }
 
-/// Counts of what a judge made of one sensor's readings.
+/// Counts of one sensor's judged readings.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Counted {
     /// Readings by their kinds.
     pub tally: Tally<u32>,
-    /// Readings that are no number.
+    /// Number of readings that are not numbers.
     pub invalid: u64,
     /// Times of the earliest and of the latest reading, in nanoseconds.
     pub between_ns: Option<(u64, u64)>,
-    /// Readings whose time is before that of the reading before.
+    /// Number of readings whose time is before that of the reading before.
     pub backwards: u64,
-    /// Pauses after which nothing is compared with what came before.
+    /// Number of pauses after which a reading is not compared with earlier ones.
     pub gaps: u64,
 }
 
@@ -62,21 +62,21 @@ struct Judged {
     clock: Clock,
 }
 
-/// The times of one sensor: finds gaps and steps back.
+/// The times of one sensor, for finding gaps and steps back.
 #[derive(Default)]
 struct Clock {
     latest_ns: Option<u64>,
-    /// A running mean of the time between two readings.
+    /// A running mean of the interval between two readings.
     usual_ns: Option<f64>,
 }
 
 impl Clock {
     /// Returns true if a reading at this time must not be compared with the one before.
     fn breaks(&mut self, at_ns: u64) -> bool {
-        /// A longer pause than this is a gap, and one of as many usual ones.
+        /// Least length of a gap, and in usual intervals.
         const SHORTEST_GAP_NS: f64 = 1e9;
         const TIMES_USUAL: f64 = 5.0;
-        /// While nothing is usual.
+        /// Least length of a gap before a usual interval is known.
         const FIRST_GAP_NS: f64 = 1e10;
         let Some(before) = self.latest_ns.replace(at_ns) else { return false };
         if at_ns < before {
@@ -93,8 +93,8 @@ impl Clock {
 }
 
 impl Judging {
-    /// A judge that has heard nothing yet; the speed of sound, in m/s, turns ranges back into times, and the log's name
-    /// stands in errors.
+    /// A judge without readings; the speed of sound, in m/s, converts ranges to times, and the log's name is used in
+    /// errors.
     ///
     /// # Errors
     /// A number of readings that the judge does not have.
@@ -103,18 +103,18 @@ impl Judging {
         Ok(Self { sensors: Vec::new(), fresh, speed_of_sound, out: None, log: log.to_owned() })
     }
 
-    /// Writes, besides, each reading onto its topic, and onto `TOPIC/accepted` what is accepted of it: the range,
-    /// `+Inf` where nothing is in range, `-Inf` for too close.
+    /// Also writes each reading to its topic, and the accepted ones to `TOPIC/accepted`: the range, `+Inf` where
+    /// nothing is in range, `-Inf` for too close.
     #[must_use]
     pub fn writing(self, out: McapWriter) -> Self {
         Self { out: Some(out), ..self }
     }
 
-    /// Judges a reading of the log whose sensors so far these are; `None` for one that is no number.
+    /// Judges a reading of a log with these sensors so far; `None` for a reading that is not a number.
     ///
     /// # Errors
-    /// A reading without a time, where the judge or the file needs one; a range that sound does not cover within an
-    /// hour; a file that cannot be written.
+    /// A reading without a time, if the judge or the file needs one; a range of more than an hour of sound; a file that
+    /// cannot be written.
     pub fn push(&mut self, sensors: &[Sensor], reading: &LogReading) -> Result<Option<ReadingKind>, FileError> {
         while self.sensors.len() <= reading.sensor {
             let (filter, counted) = (self.fresh.clone(), Counted::default());
@@ -136,7 +136,7 @@ impl Judging {
         self.sensors.iter().map(|sensor| sensor.counted).collect()
     }
 
-    /// Writes what is left of the file.
+    /// Completes the output file.
     ///
     /// # Errors
     /// A file that cannot be written.
@@ -192,7 +192,7 @@ fn untimed(thing_needs: &str) -> String {
     format!("a reading without a time; expected --time COLUMN for a table, as {thing_needs} times")
 }
 
-/// The reading as it was, and beside it what is accepted.
+/// Writes the reading, and if it is accepted, the accepted one.
 fn write(
     out: &mut McapWriter,
     sensor: &Sensor,

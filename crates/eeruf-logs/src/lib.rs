@@ -11,12 +11,12 @@
 //! | frames of `eeruf-serial`, as they came | each firing |
 //! | any of these packed | as a whole, by gzip, bzip2 or zstd |
 //!
-//! `Range` has had a `variance` since ROS 2 Iron: the schema in the file says whether it is there, else the message's
-//! length. A `LaserScan` counts as a ring of sonars if it has at most 64 beams, or if its topic is asked for; each beam
-//! is a sensor. Sensors are counted from 0. Units, times and values for no echo are guessed where the log does not say
-//! them; [`Report::guesses`] lists each guess with the option that overrides it.
+//! `Range` has had a `variance` since ROS 2 Iron: the file's schema says if it is there, or else the message's length.
+//! A `LaserScan` counts as a ring of sonars if it has at most 64 beams, or if its topic is asked for; each beam is a
+//! sensor. Sensors are counted from 0. Units, times and values for no echo are guessed if the log does not state them;
+//! [`Report::guesses`] lists each guess with the option that overrides it.
 //!
-//! What is damaged or cut off is skipped, and said in [`Report::damage`]; all the rest is read.
+//! Damaged or cut parts are skipped and listed in [`Report::damage`]; the rest is read.
 //!
 //! ```
 //! use eeruf_logs::{Echo, Options, read_log};
@@ -114,8 +114,8 @@ pub use symptom::{Finding, Symptom};
 #[cfg(feature = "files")]
 pub use write::McapWriter;
 
-/// Reads a text from beginning to end, and calls `each` as [`read_log`] does; `name` stands in errors. It needs no
-/// feature, so that a page in a browser reads what is pasted.
+/// Reads a text from beginning to end, and calls `each` as [`read_log`] does; `name` is used in errors. It needs no
+/// feature, so that a page in a browser can read pasted text.
 ///
 /// # Errors
 /// A text without lines, or an option that does not fit it.
@@ -131,7 +131,7 @@ pub fn read_text(
     Ok(sink.finish(name))
 }
 
-/// The listing of the crate's README compiles and holds.
+/// Doctest of the crate's README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -1,7 +1,7 @@
 //! Reads MCAP files (mcap.dev/spec) record by record, in the order in which they were recorded.
 //!
-//! The readers of the crate `mcap`, with which this crate writes, end at the first record that is damaged. A robot's
-//! battery ends recordings, so records are taken apart here: a damaged chunk loses only itself.
+//! The readers of the crate `mcap`, with which this crate writes, end at the first record that is damaged. Recordings
+//! often end with the battery, so this module parses records itself: a damaged chunk loses only itself.
 
 use std::collections::HashMap;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
@@ -25,12 +25,12 @@ const CHUNK: u8 = 0x06;
 const CHUNK_INDEX: u8 = 0x08;
 const STATISTICS: u8 = 0x0b;
 const DATA_END: u8 = 0x0f;
-/// A letter and a length.
+/// Length of a record's head: a letter and a length.
 const RECORD_HEAD: usize = 9;
 /// The largest chunk that is unpacked, and the largest record that is read.
 const LARGEST_CHUNK: u64 = 1 << 30;
 
-/// State after the records so far.
+/// State after reading some records.
 #[derive(Default)]
 struct State {
     /// Name and text of each schema.
@@ -38,15 +38,15 @@ struct State {
     topics: HashMap<u16, Topic>,
     /// Number of messages, if the file says so.
     counted: u64,
-    /// Positions of the chunks by its summary.
+    /// Positions of the chunks, from the summary.
     chunks: Chunks,
-    /// True if messages are packed one by one, as rosbag2 may have it.
+    /// True if messages are packed one by one, as rosbag2 can do.
     packed: bool,
     zstd: Unzstd,
     unpacked: Vec<u8>,
 }
 
-/// Reads a file to its end, or to where it cannot be read any further; `file` stands in errors.
+/// Reads a file to its end, or as far as it can be read; `file` is used in errors.
 pub(crate) fn read(opened: &mut dyn Input, file: &Path, packed: bool, sink: &mut Sink<'_>) -> Result<(), FileError> {
     let failed = |error: io::Error| FileError::reading(file, &error);
     let size = opened.seek(SeekFrom::End(0)).map_err(failed)?;
@@ -159,7 +159,7 @@ fn is_chunk(input: &mut BufReader<&mut dyn Input>, start: u64, size: u64) -> io:
 }
 
 /// The summary at the end of a file, which repeats schemas and channels and counts messages: empty if there is none,
-/// and nothing if its check sum is wrong.
+/// `None` if its check sum is wrong.
 fn summary(file: &mut dyn Input, size: u64) -> io::Result<Option<Vec<u8>>> {
     // Where the summary begins, where in it offsets do, and its check sum.
     const FIELDS: usize = 8 + 8 + 4;
@@ -184,7 +184,7 @@ fn summary(file: &mut dyn Input, size: u64) -> io::Result<Option<Vec<u8>>> {
     Ok(Some(summary))
 }
 
-/// The records of a chunk. One that is not whole is unpacked as far as it goes.
+/// The records of a chunk. A cut chunk is unpacked as far as possible.
 fn unpack_chunk(body: &[u8], zstd: &mut Unzstd, chunk: &mut Vec<u8>, whole: bool) -> Result<(), String> {
     let mut fields = Bytes::new(body, Order::Little);
     let head = (|| {
@@ -223,8 +223,7 @@ fn unpack_chunk(body: &[u8], zstd: &mut Unzstd, chunk: &mut Vec<u8>, whole: bool
 }
 
 impl State {
-    /// The schemas and channels among the records of a summary, where it says that chunks are, and how many messages it
-    /// counts.
+    /// The schemas and channels in a summary, its positions of chunks, and its number of messages.
     fn topics_of(&mut self, records: &[u8], sink: &mut Sink<'_>) -> Option<()> {
         let mut rest = Bytes::new(records, Order::Little);
         while rest.left() > 0 {
@@ -244,7 +243,7 @@ impl State {
         Some(())
     }
 
-    /// All records of a chunk, and how many of them cannot be read; `None` if they do not fit into it.
+    /// All records of a chunk, and the number of unreadable ones; `None` if they do not fit into it.
     fn records(&mut self, chunk: &[u8], sink: &mut Sink<'_>) -> Option<u64> {
         let mut lost = 0;
         let mut rest = Bytes::new(chunk, Order::Little);
@@ -256,7 +255,7 @@ impl State {
         Some(lost)
     }
 
-    /// One record that is no chunk; `None` if its fields do not fit.
+    /// One record that is not a chunk; `None` if its fields do not fit.
     fn record(&mut self, letter: u8, body: &[u8], sink: &mut Sink<'_>) -> Option<()> {
         let mut fields = Bytes::new(body, Order::Little);
         match letter {

@@ -1,7 +1,7 @@
-//! Messages with ranges as bytes: CDR, as ROS 2 has them, and the format of ROS 1.
+//! Decoding of messages with ranges: CDR of ROS 2, and the format of ROS 1.
 //!
-//! `Range` has had a `variance` since ROS 2 Iron. The schema in the file says whether a message has one; files without
-//! a schema leave it to the message's length.
+//! `Range` has had a `variance` since ROS 2 Iron. The file's schema says if a message has one; without a schema the
+//! message's length does.
 
 use std::rc::Rc;
 
@@ -26,13 +26,13 @@ pub(crate) enum Kind {
         /// True if the schema has a variance, if there is a schema.
         variance: Option<bool>,
     },
-    /// With at most as many beams.
+    /// `LaserScan` with at most this many beams.
     LaserScan(usize),
-    /// Numbers at a path, by the schema.
+    /// Numbers at a path of the schema.
     Numbers(Rc<Numbers>),
     /// `PointCloud`: each point is a sensor, at its distance from the frame's origin.
     Points(Rc<Schema>),
-    /// `PointCloud2`: the same.
+    /// `PointCloud2`, read like `PointCloud`.
     Points2,
 }
 
@@ -41,15 +41,15 @@ pub(crate) enum Kind {
 pub(crate) struct Numbers {
     schema: Schema,
     path: Vec<String>,
-    /// Unless the user says it, the field's name does, or the first values.
+    /// The unit, given by the user, the field's name, or the first values.
     pub(crate) unit: Option<RangeUnit>,
-    /// One number, no array.
+    /// True for one number instead of an array.
     pub(crate) is_single: bool,
 }
 
-/// A ring of sonars has no more beams than this; lidars have.
+/// Largest number of beams of a ring of sonars; lidars have more.
 pub(crate) const MAX_BEAMS: usize = 64;
-/// Unless the user says that a topic is one.
+/// Largest number of beams if the user names the topic.
 const MOST_BEAMS: usize = 4096;
 
 /// Reason why a message could not be decoded.
@@ -57,19 +57,20 @@ const MOST_BEAMS: usize = 4096;
 pub(crate) enum Undecoded {
     /// The message ends too early, or too late.
     Length,
-    /// A `LaserScan` of a lidar.
+    /// A `LaserScan` has as many beams as a lidar.
     Beams,
 }
 
-/// Returns true if a name says that something measures by ultrasound.
+/// Returns true if a name means measuring by ultrasound.
 fn is_sonar(name: &str) -> bool {
     let name = name.to_lowercase();
     ["sonar", "ultraso", "hcsr04", "hc_sr04", "srf0", "maxbotix"].iter().any(|word| name.contains(word))
 }
 
 impl Kind {
-    /// By the name of a type, as `sensor_msgs/Range` or `sensor_msgs/msg/Range`, the text of its schema, and what the
-    /// user says of the topic; else why its messages hold no readings, and the option that reads them, if there is one.
+    /// The kind of messages, from the name of their type (`sensor_msgs/Range` or `sensor_msgs/msg/Range`), their schema
+    /// and the user's options; or the reason why they hold no readings, with the option that reads them, if there is
+    /// one.
     pub(crate) fn of(topic: &str, type_name: &str, schema: Option<&str>, options: &Options) -> Result<Self, String> {
         if let Some(field) = options.fields.iter().find(|field| field.topic == topic) {
             let text = schema.ok_or_else(|| format!("{type_name} without a schema; --field needs one"))?;
@@ -140,7 +141,7 @@ impl Kind {
         Self::Numbers(Rc::new(Numbers { schema, path: parts, unit, is_single: !path.contains("[]") }))
     }
 
-    /// Returns true if a sensor of it is a place in its messages.
+    /// Returns true if its sensors are places in a message.
     pub(crate) fn has_places(&self) -> bool {
         match self {
             Self::Range { .. } => false,
@@ -149,7 +150,7 @@ impl Kind {
         }
     }
 
-    /// Decodes a message into readings, whose `sensor` is the beam; the answer is its frame.
+    /// Decodes a message into readings, whose `sensor` is the beam; returns its frame.
     pub(crate) fn decode(
         &self,
         encoding: Encoding,
@@ -186,7 +187,7 @@ impl Kind {
     }
 }
 
-/// Numbers as readings, in the order of their places.
+/// Adds numbers as readings, in the order of their places.
 fn push_all(header: &Header, values: Vec<f64>, recorded_ns: u64, readings: &mut Vec<LogReading>) -> Option<Vec<u8>> {
     if values.len() > MOST_BEAMS {
         return None;
@@ -205,8 +206,7 @@ fn push_all(header: &Header, values: Vec<f64>, recorded_ns: u64, readings: &mut 
     Some(header.frame.clone().into_bytes())
 }
 
-/// Returns true if a schema has a variance; `None` where it does not even have a range, so that it is no schema of
-/// `Range`.
+/// Returns true if a schema has a variance; `None` if it has no range, so that it is not a schema of `Range`.
 fn has_variance(schema: &str) -> Option<bool> {
     // The definitions of other messages follow after a line of `=`.
     let own = schema.lines().take_while(|line| !line.starts_with("===="));
@@ -216,8 +216,7 @@ fn has_variance(schema: &str) -> Option<bool> {
     has("range").then(|| has("variance"))
 }
 
-/// The bytes after CDR's own header of four bytes, of which the second gives the order of bytes, and the largest
-/// alignment.
+/// The bytes after CDR's header of four bytes, whose second byte gives the byte order, and the largest alignment.
 pub(crate) fn cdr_bytes(message: &[u8]) -> Option<(Bytes<'_>, usize)> {
     let (header, body) = message.split_at_checked(4)?;
     let order = match (header[0], header[1]) {
@@ -232,8 +231,8 @@ pub(crate) fn cdr_bytes(message: &[u8]) -> Option<(Bytes<'_>, usize)> {
 /// The fields of a message, one after the other.
 struct Fields<'a> {
     bytes: Bytes<'a>,
-    /// CDR aligns numbers, at most to this size, and ends texts by a zero; ROS 1 does neither, and its headers have a
-    /// number.
+    /// True for CDR, which aligns numbers to at most this size and ends texts with a zero; ROS 1 does neither, and its
+    /// headers have a number.
     cdr: Option<usize>,
 }
 
@@ -327,7 +326,7 @@ impl<'a> Fields<'a> {
         Ok(Some(frame))
     }
 
-    /// `PointCloud2`: how far its points are from the origin.
+    /// Reads `PointCloud2` as the distances of its points from the origin.
     fn points2(&mut self, recorded_ns: u64, readings: &mut Vec<LogReading>) -> Option<Vec<u8>> {
         let (stamp_ns, frame) = self.header(recorded_ns)?;
         let (height, width, count) = (self.u32()? as usize, self.u32()? as usize, self.u32()?);

@@ -1,4 +1,4 @@
-//! Meaning of a column's name for its values.
+//! The meaning of a column by its name.
 
 use crate::options::{RangeUnit, TimeUnit};
 
@@ -9,14 +9,14 @@ use crate::value;
 pub(crate) enum Meaning {
     Range,
     Time,
-    /// The sensor whose reading the row is.
+    /// The sensor to which the row belongs.
     Sensor,
-    /// A limit of the sensor.
+    /// A limit of the sensor's range.
     Least,
     Most,
-    /// A quantity that is no range.
+    /// A quantity other than a range.
     Other,
-    /// Nothing is known.
+    /// An unknown meaning.
     Vague,
 }
 
@@ -43,25 +43,25 @@ const OTHERS: &str = "\
     vx vy vz q servo cmd linear angular valid ok enabled bump bumper touch contact estop hz fps deg degc lux feed \
     stat orient elevation adc analog analogue ttl";
 
-/// Directions and places of sensors, as people call them in their languages.
+/// Words for directions and places of sensors, in several languages.
 const PLACES: &str = "\
     left right front back rear center centre middle mid top bottom upper lower side corner bow stern port starboard \
     north south east west fl fr bl br rl rr fc lf rf lb rb lr links rechts vorne vorn hinten mitte oben unten \
     gauche droite avant arriere izquierda derecha frente atras delante sinistra destra sx dx lus rus";
-/// Lengths that are worked out from a range, where there is one.
+/// Words for lengths that are computed from a range.
 const DERIVED: &str = "depth level height tcdt";
-/// Lines that a sketch draws to fix a plotter's axis.
+/// Words for constant lines that fix the axis of a plotter.
 const LIMITS: &str = "min max minimum maximum lower upper lower_limit upper_limit";
-/// Units that are a name on their own.
+/// Units that are names by themselves.
 const UNITS: &str = "cm mm inch inches meters metres centimeters centimetres millimeters millimetres";
 const FILTERS: &str = "filtered filter smoothed smooth avg average averaged mean median kalman ema sma lowpass lpf";
 
-/// Returns true if a list, parted by spaces, has this word.
+/// Returns true if a list, separated by spaces, has this word.
 fn is_in(list: &str, word: &str) -> bool {
     list.split(' ').any(|own| own == word)
 }
 
-/// The words of a name, in lower case: `frontLeft_cm2` is `front`, `left`, `cm`, `2`.
+/// The words of a name in lower case: `frontLeft_cm2` is `front`, `left`, `cm`, `2`.
 fn words(name: &str) -> Vec<String> {
     let mut words = vec![String::new()];
     let mut before = ' ';
@@ -82,7 +82,7 @@ fn words(name: &str) -> Vec<String> {
     words
 }
 
-/// By the last part of a path; where that says nothing, by all of it.
+/// The meaning of the last part of a path or, if that is vague, of the whole path.
 pub(crate) fn meaning(name: &str) -> Meaning {
     // QGroundControl names distances by the sensor's direction: `distanceSensor.rotationPitch270`.
     if let Some((sensor, _)) = name.rsplit_once(".rotation")
@@ -140,7 +140,7 @@ fn is_unit(word: &str) -> bool {
     value::unit(word).is_some() || time_word(word).is_some()
 }
 
-/// The unit of ranges in a name, and whether the name says it without doubt: `us` is also ultrasound.
+/// The unit of ranges in a name, and whether the name says it without doubt: `us` also means ultrasound.
 pub(crate) fn range_unit(name: &str) -> Option<(RangeUnit, bool)> {
     let words = words(name);
     let last = words.last()?;
@@ -165,7 +165,7 @@ fn time_word(word: &str) -> Option<TimeUnit> {
     })
 }
 
-/// A name without words for ranges, units, filters and copies: which sensor it is of.
+/// A name without words for ranges, units, filters and copies, which identifies the sensor.
 pub(crate) fn stem(name: &str) -> Vec<String> {
     let mut words = words(name);
     words.retain(|word| ![RANGES, FILTERS, ECHOES, "raw copy"].iter().any(|list| is_in(list, word)) && !is_unit(word));
@@ -177,7 +177,7 @@ pub(crate) fn is_letter_of_place(name: &str) -> bool {
     is_in("l r c m f b", &name.to_lowercase())
 }
 
-/// A name without all that says nothing of the quantity: places, filters, units, numbers, and words for any value.
+/// A name without words that do not describe the quantity: places, filters, units, numbers, and words for any value.
 pub(crate) fn quantity(name: &str) -> String {
     const ANY: &str = "field data reading sensor ch channel column s us u d dt tcdt val state copy raw a b c e";
     let mut words = stem(name);
@@ -185,22 +185,22 @@ pub(crate) fn quantity(name: &str) -> String {
     words.concat()
 }
 
-/// Returns true for the name of a place on a robot, as a sensor has it.
+/// Returns true for the name of a place on a robot.
 pub(crate) fn is_place(name: &str) -> bool {
     words(name).iter().any(|word| is_in(PLACES, word))
 }
 
-/// Returns true for the name of what a filter made of readings.
+/// Returns true for the name of filtered readings.
 pub(crate) fn is_filtered(name: &str) -> bool {
     words(name).iter().any(|word| is_in(FILTERS, word))
 }
 
-/// Returns true for the name of a length that a program works out from a range.
+/// Returns true for the name of a length that a program computes from a range.
 pub(crate) fn is_derived(name: &str) -> bool {
     words(name).iter().any(|word| is_in(DERIVED, word))
 }
 
-/// Returns true for a pin of an analogue converter, as `A0`.
+/// Returns true for the name of an analogue input pin, such as `A0`.
 pub(crate) fn is_analogue_pin(name: &str) -> bool {
     let pin = name.trim().strip_prefix(['A', 'a']).and_then(|pin| pin.parse::<u8>().ok());
     pin.is_some_and(|pin| pin < 16)
@@ -217,7 +217,7 @@ pub(crate) fn time_unit(name: &str) -> Option<TimeUnit> {
     words(name).iter().rev().find_map(|word| time_word(word))
 }
 
-/// Preference of a column's time: the stamp of a message's header, then any other.
+/// Preference for a time column: the stamp of a message's header first.
 pub(crate) fn preference(name: &str) -> u8 {
     let words = words(name);
     let has = |word: &str| words.iter().any(|own| own == word);

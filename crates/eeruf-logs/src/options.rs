@@ -8,21 +8,21 @@ pub struct Options {
     pub table: Table,
     /// Speed of sound in m/s, for values that are echo times.
     pub speed_of_sound: f64,
-    /// Range in metres from which a value of a text means no echo.
+    /// Range in metres from which on a value of a text means no echo.
     pub no_echo_m: f64,
     /// Values that mean no echo, in the log's unit, or words. If empty: zero, values below zero, and a ceiling that the
     /// log repeats.
     pub no_echo: Vec<String>,
-    /// The topics of a bag to read, whatever their type, as far as it can be read. If empty, all that hold ranges.
+    /// The topics of a bag to read, of any readable type. If empty, all that hold ranges.
     pub topics: Vec<String>,
     /// Fields of messages that hold ranges.
     pub fields: Vec<FieldChoice>,
-    /// Reads what a filter made of other topics too: `TOPIC/accepted` and `TOPIC/confirmed` beside `TOPIC`.
+    /// True to read also the topics that a filter wrote: `TOPIC/accepted` and `TOPIC/confirmed` beside `TOPIC`.
     pub judged: bool,
 }
 
 impl Default for Options {
-    /// Guesses everything; 343.2 m/s; no echo from 5 m on.
+    /// Options that guess everything, with 343.2 m/s, and no echo from 5 m on.
     fn default() -> Self {
         Self {
             table: Table::default(),
@@ -42,13 +42,13 @@ pub(crate) enum Parts {
     Columns,
     #[cfg(feature = "files")]
     Topics,
-    /// Frames of the serial line, which have neither.
+    /// Frames of the serial line, which have neither columns nor topics.
     #[cfg(feature = "files")]
     Frames,
 }
 
 impl Options {
-    /// A warning of options that choose from parts which the log does not have.
+    /// A warning about options for parts that the log does not have.
     pub(crate) fn without_effect(&self, parts: Parts) -> Option<String> {
         let bags = || given(&[("--topic", !self.topics.is_empty()), ("--field", !self.fields.is_empty())]);
         let (idle, has) = match parts {
@@ -98,7 +98,7 @@ pub struct FieldChoice {
 pub struct Table {
     /// The names of the columns in their order, in place of a header; `-` leaves one out. If empty, the header's.
     pub columns: Vec<String>,
-    /// The columns with ranges. If empty, those that a name or a unit calls so, else all of numbers alone.
+    /// The columns with ranges. If empty, those called so by a name or a unit, or else all purely numeric ones.
     pub ranges: Vec<String>,
     /// The unit of the ranges.
     pub range_unit: Option<RangeUnit>,
@@ -106,7 +106,7 @@ pub struct Table {
     pub time: Option<String>,
     /// The unit of the time.
     pub time_unit: Option<TimeUnit>,
-    /// The column that says whose reading a row is; then there is one column with ranges.
+    /// The column that names a row's sensor; there is then one column with ranges.
     pub sensor: Option<String>,
 }
 
@@ -124,7 +124,7 @@ pub enum RangeUnit {
     In,
     /// Feet.
     Ft,
-    /// Microseconds from firing to echo, there and back.
+    /// Microseconds of round trip from firing to echo.
     Us,
 }
 
@@ -143,7 +143,7 @@ pub enum TimeUnit {
 }
 
 impl RangeUnit {
-    /// Metres in one of it.
+    /// The unit in metres.
     pub(crate) fn metres(self, speed_of_sound: f64) -> f64 {
         match self {
             Self::M => 1.0,
@@ -177,7 +177,7 @@ impl TimeUnit {
         }
     }
 
-    /// Nanoseconds in one of it.
+    /// The unit in nanoseconds.
     pub(crate) const fn nanoseconds(self) -> f64 {
         match self {
             Self::S => 1e9,

@@ -1,23 +1,23 @@
-//! The firing pattern of a ring from the times of its readings, and what the agreement of readings proves for it.
+//! The firing pattern of a ring, from the times of its readings, and what agreement of readings proves for it.
 
 use std::fmt;
 
 /// Pattern in which the sensors of a ring fire relative to each other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Pattern {
-    /// All at the same instant.
+    /// All sensors fire at the same instant.
     AtOnce,
-    /// One after the other, each after the echoes of the one before.
+    /// Sensors fire one after the other, each after the echoes of the one before.
     InTurn,
-    /// With the same lag in every round, shorter than echoes last.
+    /// Sensors fire with the same lag in every round, shorter than echoes last.
     ConstantLags,
-    /// With two lags for each pair of sensors, as the paper's two phases have them.
+    /// Each pair of sensors has two lags, as with the paper's two phases.
     Alternating,
-    /// With more lags than two for each pair.
+    /// Each pair of sensors has more than two lags.
     Several,
-    /// With a lag that is never the same twice.
+    /// Lags never repeat.
     Flow,
-    /// The log does not tell.
+    /// The log does not show the pattern.
     #[default]
     Unknown,
 }
@@ -42,20 +42,20 @@ impl Pattern {
 pub struct FiringPattern {
     /// The pattern.
     pub pattern: Pattern,
-    /// The median time between two readings of one sensor.
+    /// The median interval between two readings of one sensor.
     pub period_us: Option<u64>,
-    /// The shortest time between two firings that follow each other, of different sensors; 5 % are shorter.
+    /// The shortest interval between consecutive firings of different sensors (the 5 % quantile).
     pub gap_us: Option<u64>,
     /// The least difference between the two lags of a pair; agreement within a `t_delta` below it excludes crosstalk.
     pub least_change_us: Option<u64>,
-    /// Pairs of sensors with one lag only, and all pairs.
+    /// Number of pairs of sensors with only one lag, and of all pairs.
     pub constant_pairs: (usize, usize),
-    /// Reason why the log does not tell, if it does not.
+    /// Reason why the log does not show the pattern, if it does not.
     pub why: String,
 }
 
 impl FiringPattern {
-    /// The proof that agreement within this `t_delta` of a sensor's consecutive readings gives for the pattern.
+    /// What agreement of a sensor's consecutive readings within this `t_delta` proves for the pattern.
     pub fn proves(&self, t_delta_us: Option<u32>) -> String {
         let repeats = "the sound of another sensor repeats as exactly as the own echo, so that agreement of \
                        consecutive readings shows nothing about crosstalk";
@@ -115,9 +115,9 @@ impl fmt::Display for FiringPattern {
     }
 }
 
-/// Times that are kept for the pattern.
+/// Number of times that are kept for the pattern.
 const MOST_STAMPS: usize = 1 << 15;
-/// Lags further apart are two.
+/// Difference above which two lags are distinct.
 const TOLERANCE_NS: u64 = 100_000;
 
 /// The first times of a log.
@@ -140,7 +140,7 @@ impl Stamps {
         }
     }
 
-    /// The pattern. In a table with one time a row the time is that of the row, not of a firing.
+    /// The pattern. In a table with one time for each row, that is the time of the row, not of a firing.
     pub(crate) fn pattern(mut self, sensors: usize, one_time_a_row: bool) -> FiringPattern {
         let unknown = |why: &str| FiringPattern { why: why.to_owned(), ..FiringPattern::default() };
         if sensors < 2 {
@@ -182,7 +182,7 @@ fn median(values: impl Iterator<Item = u64>) -> Option<u64> {
     values.get(values.len() / 2).copied()
 }
 
-/// The lags of a pair: their clusters, each with its mean and number, and where the middle 80 % lie.
+/// The lags of a pair: their clusters, each with mean and number, and the range of the middle 80 %.
 struct Lags {
     clusters: Vec<(f64, usize)>,
     spread: i64,
@@ -234,7 +234,7 @@ fn of_lags(
     mut found: FiringPattern,
     is_coarse: bool,
 ) -> FiringPattern {
-    /// As many firings of a sensor are enough.
+    /// Number of a sensor's firings that suffices.
     const ENOUGH: usize = 400;
     let tolerance = if is_coarse { 1_000_000 } else { TOLERANCE_NS };
     let (mut constant, mut two, mut more, mut smeared, mut at_once, mut pairs) = (0, 0, 0, 0, 0, 0);
@@ -299,7 +299,7 @@ fn of_lags(
 mod tests {
     use super::*;
 
-    /// The pattern of 6 sensors that fire so, in microseconds, in each of 200 rounds.
+    /// The pattern of 6 sensors that fire at these times, in microseconds, in each of 200 rounds.
     fn pattern(fires_at: impl Fn(u64, u64) -> u64) -> FiringPattern {
         let mut stamps = Stamps::default();
         for round in 0..200 {

@@ -1,4 +1,4 @@
-//! Contents of a log: readings, and the sensors that they are of.
+//! Contents of a log: readings and their sensors.
 
 /// A sensor of a log: a topic and a frame, and for a `LaserScan` one of its beams.
 #[derive(Clone, Debug, PartialEq, Eq, Hash)]
@@ -12,7 +12,7 @@ pub struct Sensor {
 }
 
 impl Sensor {
-    /// The topic, with frame and beam where there are several sensors on it.
+    /// The topic, with frame and beam if it has several sensors.
     pub fn name(&self, alone_on_its_topic: bool) -> String {
         match (self.beam, alone_on_its_topic || self.frame.is_empty()) {
             (Some(beam), _) => format!("{}[{beam}]", self.topic),
@@ -27,7 +27,7 @@ impl Sensor {
 pub struct LogReading {
     /// The sensor, as an index into [`Report::sensors`](crate::Report::sensors).
     pub sensor: usize,
-    /// The time in nanoseconds: the header's stamp, or when the message was recorded if the stamp is zero.
+    /// The time in nanoseconds: the header's stamp, or the recording time of the message if the stamp is zero.
     pub at_ns: Option<u64>,
     /// `radiation_type`: 0 is ultrasound, 1 infrared.
     pub radiation: u8,
@@ -37,9 +37,9 @@ pub struct LogReading {
     pub min_range_m: f64,
     /// Range in metres from which a value means no echo.
     pub max_range_m: f64,
-    /// The range in metres as it stands in the log, with what REP 117 makes of infinities.
+    /// The range in metres as recorded, with infinities as in REP 117.
     pub range_m: f64,
-    /// `variance`, in square metres, where the message has one.
+    /// `variance`, in square metres, if the message has one.
     pub variance: Option<f32>,
 }
 
@@ -50,7 +50,7 @@ pub enum Echo {
     At(f64),
     /// Nothing in range: `+Inf`, or the maximum range and more.
     Nothing,
-    /// Something nearer than can be measured: `-Inf`, or less than the minimum range.
+    /// An object too close to measure: `-Inf`, or less than the minimum range.
     TooClose,
     /// Not a number: the driver reported an error.
     Invalid,

@@ -1,4 +1,4 @@
-//! [`replay_flow`]: a ring that fires by flow, judged again over a log of its firings.
+//! [`replay_flow`]: judges a log of firings again, as a flow ring does.
 
 use std::collections::VecDeque;
 
@@ -21,28 +21,28 @@ pub struct FlowSettings {
     pub blanking: Micros,
     /// R: how long sound is heard, its tail included.
     pub audible: Micros,
-    /// Belief.
+    /// Settings of the judge.
     pub belief: BeliefSettings,
-    /// Limits of each sensor, where they are not all alike.
+    /// Limits of each sensor, if they are not all alike.
     pub limits: EachSensor<MAX_SENSORS>,
 }
 
-/// A reading as it is judged again.
+/// A reading judged again.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Replayed {
     /// The outcome.
     pub kind: ReadingKind,
-    /// The echo that is believed of its sensor since.
+    /// The echo that is believed of its sensor from then on.
     pub believed: Option<Micros>,
     /// The explanation of an ambiguous reading.
     pub explained_by: Option<Explanation>,
 }
 
-/// Judges the readings of a log again, as a ring that fires by flow does: by what was fired, and when. One for each
-/// firing of the log; `None` for edges that came late, which are none.
+/// Judges the readings of a log again as a flow ring does, from the actual firings. Returns one for each firing of the
+/// log; `None` for late edges, which are not readings.
 ///
-/// The readings' kinds tell what the log does not hold: whether silent sensors had shown that they listened, and which
-/// lines were stuck. Firings before its beginning are not known, as if silence had come before.
+/// The readings' kinds supply information that the log lacks: if silent sensors had shown that they listened, and which
+/// lines were stuck. Earlier firings are unknown, and silence is assumed before the log.
 ///
 /// # Errors
 /// Settings that a ring refuses.
@@ -63,7 +63,7 @@ pub fn replay_flow(log: &FiringLog, settings: &FlowSettings) -> Result<Vec<Optio
     Ok(replayed)
 }
 
-/// A stretch without a long pause.
+/// Judges a stretch without a long pause.
 fn stretch(
     log: &FiringLog,
     rows: &[usize],
@@ -130,14 +130,14 @@ fn stretch(
     }
 }
 
-/// Tells the ring what its caller did when this sensor fired.
+/// Reports to the ring what its caller did at this sensor's firing.
 fn told(
     ring: &mut Ring<Recorded, Belief<MAX_SENSORS>, MAX_SENSORS, 1, 3>,
     of: &Firing,
     silence: Silence,
     now: Instant,
 ) {
-    /// `v = g c / 2`, in mm/s, of a rate in microseconds for each millisecond, as logs have it.
+    /// Factor of `v = g c / 2`, in mm/s, for a rate in microseconds for each millisecond, as in logs.
     const MM_S: f32 = 171.5;
     if let Some(g) = of.g_us_ms {
         ring.moving((g * MM_S).round() as u32, 0, now);
@@ -150,8 +150,8 @@ fn told(
     }
 }
 
-/// The meaning of silence for the ring, by its readings: it needs an answer where one was missing, and it is never free
-/// space where a sensor was silent more often in a row than belief holds, and nothing was ever clear.
+/// The ring's meaning of silence, from its readings: silence needs an answer if one was ever missing; it is never free
+/// space if a sensor was silent more often in a row than a belief holds and nothing was ever clear.
 fn silence_of(log: &FiringLog, hold: u8) -> Silence {
     let has = |kind| log.firings.iter().any(|firing| firing.reading == Some(kind));
     if has(ReadingKind::Unanswered) {
@@ -173,14 +173,14 @@ fn instant(us: i64) -> Instant {
     Instant::from_micros(us as u32)
 }
 
-/// Firings when they happened.
+/// A plan that repeats recorded firings.
 #[derive(Debug)]
 struct Recorded {
-    /// When, and who.
+    /// Instants and sensors of the firings.
     firings: Vec<(Instant, u8)>,
     periods: Vec<u32>,
     next: usize,
-    /// The period before that of the next firing has ended.
+    /// True if the period before that of the next firing has ended.
     ended: bool,
     sensors: usize,
     window: Micros,
@@ -188,7 +188,7 @@ struct Recorded {
     limits: EachSensor<MAX_SENSORS>,
 }
 
-/// Any time, of a clock that wraps in 71 minutes.
+/// A time as on a clock that wraps in 71 minutes.
 const ANY: Micros = Micros::new(1 << 31);
 
 impl Recorded {

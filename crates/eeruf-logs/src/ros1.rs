@@ -1,6 +1,6 @@
 //! Reads ROS 1 bags, format 2.0 (wiki.ros.org/Bags/Format/2.0), record by record, without their index.
 //!
-//! The one crate that reads them takes its way through the index, which a recording that was cut off does not have.
+//! The only crate for them needs the index, which a cut recording lacks.
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -25,7 +25,7 @@ const CONNECTION: u8 = 0x07;
 /// The largest chunk that is unpacked.
 const LARGEST_CHUNK: u32 = 1 << 30;
 
-/// The fields of a record's header that matter here.
+/// The fields of a record's header that are used here.
 #[derive(Clone, Copy, Default)]
 struct Header<'a> {
     op: u8,
@@ -43,7 +43,7 @@ struct Header<'a> {
 }
 
 impl<'a> Header<'a> {
-    /// `NAME=VALUE`, each after its length; `None` where that does not fit.
+    /// Fields `NAME=VALUE`, each after its length; `None` if they do not fit.
     fn of(bytes: &'a [u8]) -> Option<Self> {
         let mut header = Self::default();
         let mut rest = Bytes::new(bytes, Order::Little);
@@ -75,11 +75,11 @@ struct State {
     topics: HashMap<u32, Topic>,
     /// Number of messages, if the index says so.
     counted: u64,
-    /// Positions of the chunks by the index.
+    /// Positions of the chunks, from the index.
     chunks: Chunks,
 }
 
-/// Reads a bag to its end, or to where it cannot be read any further; `file` stands in errors.
+/// Reads a bag to its end, or as far as it can be read; `file` is used in errors.
 pub(crate) fn read(opened: &mut dyn Input, file: &Path, sink: &mut Sink<'_>) -> Result<(), FileError> {
     let failed = |error: io::Error| FileError::reading(file, &error);
     let size = opened.seek(SeekFrom::End(0)).map_err(failed)?;
@@ -181,7 +181,7 @@ pub(crate) fn read(opened: &mut dyn Input, file: &Path, sink: &mut Sink<'_>) -> 
 
 /// Returns true if a chunk begins at a place that the index names.
 fn is_chunk(input: &mut BufReader<&mut dyn Input>, start: u64) -> io::Result<bool> {
-    /// More than the header of a chunk has.
+    /// Upper limit of the length of a chunk's header.
     const LONGEST: u64 = 4096;
     input.seek(SeekFrom::Start(start))?;
     let mut head = Vec::new();
@@ -206,7 +206,7 @@ fn index(file: &mut dyn Input, size: u64) -> io::Result<Vec<u8>> {
     Ok(index)
 }
 
-/// Unpacks a chunk, as far as it goes.
+/// Unpacks a chunk as far as possible.
 fn unpack_chunk(header: &Header<'_>, body: &[u8], chunk: &mut Vec<u8>) -> Result<(), String> {
     if header.size > LARGEST_CHUNK {
         return Err(format!("it says that it holds {} bytes; expected at most {LARGEST_CHUNK}", header.size));
@@ -230,7 +230,7 @@ fn unpack_chunk(header: &Header<'_>, body: &[u8], chunk: &mut Vec<u8>) -> Result
 }
 
 impl State {
-    /// The connections among the records of the index, where it says that chunks are, and how many messages it counts.
+    /// The connections in the index, its positions of chunks, and its number of messages.
     fn connections_of(&mut self, records: &[u8], sink: &mut Sink<'_>) -> Option<()> {
         let mut rest = Bytes::new(records, Order::Little);
         while rest.left() > 0 {
@@ -251,7 +251,7 @@ impl State {
         Some(())
     }
 
-    /// All records of a chunk, and how many of them cannot be read; `None` if they do not fit into it.
+    /// All records of a chunk, and the number of unreadable ones; `None` if they do not fit into it.
     fn records(&mut self, chunk: &[u8], sink: &mut Sink<'_>) -> Option<u64> {
         let mut lost = 0;
         let mut rest = Bytes::new(chunk, Order::Little);
@@ -263,7 +263,7 @@ impl State {
         Some(lost)
     }
 
-    /// One record that is no chunk; `None` if its fields do not fit.
+    /// One record that is not a chunk; `None` if its fields do not fit.
     fn record(&mut self, header: &Header<'_>, body: &[u8], sink: &mut Sink<'_>) -> Option<()> {
         let text = |bytes| String::from_utf8_lossy(bytes);
         match header.op {

@@ -1,5 +1,5 @@
-//! The messages of ROS 2 that are written, with their definitions: each is a name, the text of its fields, and those
-//! of the messages in it.
+//! The messages of ROS 2 that are written, with their definitions: a name, the text of the fields, and the definitions
+//! of nested messages.
 
 use std::fmt::Write;
 
@@ -18,7 +18,7 @@ pub struct Placement {
 }
 
 impl Placement {
-    /// The frame's own origin.
+    /// The frame's origin.
     pub const ORIGIN: Self = Self { position: [0.0; 3], orientation: [0.0, 0.0, 0.0, 1.0] };
 
     /// A place in the plane, with a heading in radians.
@@ -36,9 +36,9 @@ impl Placement {
 /// The place of a frame in its parent.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Transform {
-    /// The frame it is given in.
+    /// The parent frame.
     pub parent: String,
-    /// The frame that it places.
+    /// The child frame.
     pub child: String,
     /// The place.
     pub placement: Placement,
@@ -83,7 +83,7 @@ const QUATERNION: (&str, &str) = ("geometry_msgs/Quaternion", "float64 x\nfloat6
 const POSE: (&str, &str) =
     ("geometry_msgs/Pose", "geometry_msgs/Point position\ngeometry_msgs/Quaternion orientation\n");
 
-/// A message type: its name, its fields, and the types of them.
+/// A message type: its name, its fields, and their types.
 pub(crate) struct Type {
     pub(crate) name: &'static str,
     fields: &'static str,
@@ -179,7 +179,7 @@ pub(crate) fn range(out: &mut Cdr, frame: &str, reading: &LogReading) {
     out.f32s([field_of_view_rad, min, max, range, variance.unwrap_or(0.0)]);
 }
 
-/// The fields of [`FIRINGS`]; what a log does not say is 0, and a flag before it says so.
+/// The fields of [`FIRINGS`]; missing values are 0, and a flag before each says so.
 pub(crate) fn firing(out: &mut Cdr, at_ns: u64, clock: &str, firing: &Firing) {
     let Firing { sensor, fired_us, period, phase, t_echo_us, g_us_ms, .. } = *firing;
     out.header(at_ns, "");
@@ -203,7 +203,7 @@ pub(crate) fn transforms(out: &mut Cdr, at_ns: u64, transforms: &[Transform]) {
     }
 }
 
-/// Covariances are 0: place and velocities are exact.
+/// Writes odometry with zero covariances: place and velocities are exact.
 pub(crate) fn odometry(out: &mut Cdr, at_ns: u64, of: &Transform, linear_m_s: [f64; 3], angular_rad_s: [f64; 3]) {
     out.header(at_ns, &of.parent);
     out.text(&of.child);

@@ -19,7 +19,7 @@ struct Metadata {
     files: Vec<PathBuf>,
     /// Number of messages they have.
     messages: u64,
-    /// True if each message is compressed for itself.
+    /// True if each message is compressed by itself.
     packed: bool,
 }
 
@@ -120,7 +120,7 @@ fn bag_files(folder: &Path) -> Result<Vec<PathBuf>, FileError> {
     Ok(files)
 }
 
-/// Reads a bag file in `SQLite`; `file` stands in errors. Rows come in the order in which they were written.
+/// Reads a bag file in `SQLite`, in the order in which rows were written; `file` is used in errors.
 pub(crate) fn read_sqlite(opened: &Path, file: &Path, packed: bool, sink: &mut Sink<'_>) -> Result<(), FileError> {
     let failed = |error: rusqlite::Error| FileError::new(file, format!("as an SQLite bag: {error}"));
     if !opened.is_file() {

@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use crate::bytes::Bytes;
 
-/// Types within types.
+/// Largest depth of nested types.
 const DEEPEST: usize = 16;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -44,7 +44,7 @@ struct Field {
     length: Length,
 }
 
-/// A message's definition, with those of the messages in it. The message itself has the name "".
+/// A message's definition, with those of its nested messages. The message itself has the name "".
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Schema(HashMap<String, Vec<Field>>);
 
@@ -74,7 +74,7 @@ fn primitive(name: &str) -> Option<Primitive> {
 }
 
 impl Schema {
-    /// Parses a definition: fields, and after lines of `=` those of other messages, each after `MSG: NAME`.
+    /// Parses a definition: its fields, and after lines of `=` the nested messages, each after `MSG: NAME`.
     pub(crate) fn parse(text: &str) -> Option<Self> {
         let mut types: HashMap<String, Vec<Field>> = HashMap::new();
         let mut own = String::new();
@@ -137,7 +137,7 @@ impl Schema {
         paths
     }
 
-    /// The numbers at a path of a message, and its header; nothing if the message does not fit the definition.
+    /// The numbers at a path of a message, and its header; `None` if the message does not fit the definition.
     pub(crate) fn numbers(
         &self,
         path: &[String],
@@ -170,7 +170,7 @@ impl Walk<'_, '_> {
     }
 
     fn message(&mut self, of: &str, wanted: Option<&[String]>, depth: usize) -> Option<()> {
-        /// Numbers of one message.
+        /// Largest number of numbers in one message.
         const MOST: usize = 1 << 16;
         if depth > DEEPEST {
             return None;

@@ -1,4 +1,4 @@
-//! Frames of the serial line as they came: readings for [`read_log`](crate::read_log), and firings.
+//! Raw frames of the serial line: readings for [`read_log`](crate::read_log), and firings.
 
 use std::io::{self, Read};
 use std::path::Path;
@@ -11,7 +11,7 @@ use crate::reading::{LogReading, Sensor};
 use crate::sink::Sink;
 use eeruf_files::FileError;
 
-/// Returns true if there are two whole frames, whose check sums fit, and more of them than damaged ones.
+/// Returns true if there are two whole frames with correct check sums, and more such frames than damaged ones.
 pub(crate) fn is_serial(first: &[u8]) -> bool {
     let mut decoder = Decoder::default();
     let (mut whole, mut damaged) = (0, 0);
@@ -25,7 +25,7 @@ pub(crate) fn is_serial(first: &[u8]) -> bool {
     whole >= 2 && whole > damaged
 }
 
-/// Contents of a recording beside its firings.
+/// Contents of a recording besides its firings.
 #[derive(Default)]
 struct Line {
     clock: String,
@@ -42,7 +42,7 @@ impl Line {
     }
 }
 
-/// Hands in each firing with its time, in microseconds, of a clock that does not wrap.
+/// Passes each firing with its time, in microseconds of a clock that does not wrap.
 fn frames(mut input: impl Read, mut each: impl FnMut(FiringMessage, i64)) -> io::Result<Line> {
     let (mut decoder, mut line) = (Decoder::default(), Line::default());
     let (mut next, mut last, mut is_first) = (None, None::<(u32, i64)>, true);
@@ -84,7 +84,7 @@ fn frames(mut input: impl Read, mut each: impl FnMut(FiringMessage, i64)) -> io:
     }
 }
 
-/// Reads ranges; `file` stands in errors.
+/// Reads ranges; `file` is used in errors.
 pub(crate) fn read(input: impl Read, file: &Path, options: &Options, sink: &mut Sink<'_>) -> Result<(), FileError> {
     sink.has(Parts::Frames);
     let metres = RangeUnit::Us.metres(options.speed_of_sound);
@@ -115,7 +115,7 @@ pub(crate) fn read(input: impl Read, file: &Path, options: &Options, sink: &mut 
     Ok(())
 }
 
-/// Reads firings; `file` stands in errors.
+/// Reads firings; `file` is used in errors.
 pub(crate) fn firings(input: impl Read, file: &Path) -> Result<FiringLog, FileError> {
     let mut firings = vec![];
     let line = frames(input, |firing, at| {

@@ -1,4 +1,4 @@
-//! Where readers of files hand in messages: finds out which sensor each reading is of, counts, and notes what is lost.
+//! Receives messages from readers of files, assigns readings to sensors, counts them, and notes damage.
 
 use std::fmt;
 use std::path::Path;
@@ -8,24 +8,24 @@ use crate::pattern::{FiringPattern, Stamps};
 use crate::reading::{Echo, LogReading, Sensor};
 use eeruf_files::FileError;
 
-/// Contents of a log, and what of it could not be read.
+/// Contents of a log, with its damage.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Report {
     /// The form of the file.
     pub form: String,
-    /// The sensors, in the order in which they were first met.
+    /// The sensors, in the order of their first readings.
     pub sensors: Vec<Sensor>,
-    /// Number of messages with readings there that were (rows, of a CSV file).
+    /// Number of messages with readings (for a CSV file, rows).
     pub messages: u64,
-    /// Damage, as far as it is known.
+    /// The known damage.
     pub damage: Vec<FileError>,
-    /// Topics without readings, with their types, and how many topics had none at all.
+    /// Topics without readings, with their types and number of messages.
     pub skipped: Vec<Skipped>,
-    /// Guesses about what the log does not say.
+    /// Guesses about properties that the log does not state.
     pub guesses: Vec<Guess>,
-    /// Values that were read and seem to be wrong.
+    /// Warnings about values that seem to be wrong.
     pub warnings: Vec<String>,
-    /// Firing pattern of the sensors, by the times of the readings.
+    /// Firing pattern of the sensors, from the times of the readings.
     pub firing: FiringPattern,
 }
 
@@ -34,20 +34,20 @@ pub struct Report {
 pub struct Guess {
     /// The subject of the guess.
     pub what: String,
-    /// The guess, and what it is made by.
+    /// The guessed value, and its basis.
     pub value: String,
     /// The options that override it.
     pub option: String,
 }
 
-/// A topic whose messages, or some of them, hold no readings.
+/// A topic with messages that hold no readings.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Skipped {
     /// The topic.
     pub topic: String,
     /// Reason why its messages were left out.
     pub why: String,
-    /// Number of messages that were left out, where they were counted.
+    /// Number of omitted messages, if they were counted.
     pub messages: u64,
 }
 
@@ -59,19 +59,19 @@ impl Report {
     }
 }
 
-/// Damage beyond this is counted, not listed.
+/// Number of damages that are listed; further ones are only counted.
 const LISTED: usize = 100;
 
 /// Knowledge of the topics of a log.
 #[cfg(feature = "files")]
 #[derive(Default)]
 pub(crate) struct Topics {
-    /// Number of messages that were found, of whatever type and whether or not they could be read.
+    /// Number of messages of any type, readable or not.
     pub(crate) found: u64,
     pub(crate) buffer: Vec<LogReading>,
     /// Topics with readings.
     pub(crate) names: std::collections::HashSet<String>,
-    /// Topics of which one warning is enough.
+    /// Topics about which a warning was given.
     pub(crate) warned: std::collections::HashSet<String>,
 }
 
@@ -84,9 +84,9 @@ pub(crate) struct Sink<'a> {
     #[cfg(feature = "files")]
     pub(crate) of_topics: Topics,
     pub(crate) stamps: Stamps,
-    /// All readings of a row, or of a message, have its time.
+    /// True if all readings of a row or message share its time.
     pub(crate) one_time_a_row: bool,
-    /// Readings have times of their own.
+    /// True if readings have times of their own.
     pub(crate) has_own_times: bool,
 }
 
@@ -110,29 +110,29 @@ impl<'a> Sink<'a> {
         form.clone_into(&mut self.report.form);
     }
 
-    /// Warns of options that choose from parts which the log does not have.
+    /// Warns about options for parts that the log does not have.
     pub(crate) fn has(&mut self, parts: Parts) {
         self.report.warnings.extend(self.options.without_effect(parts));
     }
 
-    /// A reading that came in no message.
+    /// Adds a reading that is not part of a message.
     pub(crate) fn reading(&mut self, reading: &LogReading) {
         self.stamps.push(reading.sensor, reading.at_ns, finite(reading));
         (self.each)(&self.report, reading);
     }
 
-    /// A line of a text cannot be read.
+    /// Notes a damaged line of a text.
     pub(crate) fn damaged_line(&mut self, file: &Path, line: u64, message: impl fmt::Display) {
         self.note(FileError::new(file, message).at_line(Some(line)));
     }
 
-    /// A part of a file cannot be read.
+    /// Notes a damaged part of a file.
     #[cfg(feature = "files")]
     pub(crate) fn damage(&mut self, file: &Path, at: Option<u64>, message: impl fmt::Display) {
         self.note(FileError::new(file, message).at_byte(at));
     }
 
-    /// Lists damage, as far as there is room for it.
+    /// Lists damage, as far as there is room.
     pub(crate) fn note(&mut self, damage: FileError) {
         if self.report.damage.len() < LISTED {
             self.report.damage.push(damage);

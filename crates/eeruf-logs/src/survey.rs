@@ -1,11 +1,11 @@
-//! Findings of a measuring run: which sensor hears which, along paths of which length, and how sure that is.
+//! Findings of a measuring run: which sensor hears which, along paths of what length, and how certainly.
 //!
 //! In each slot of a survey at most two sensors fire, and all earlier sound has died away: see
 //! [`SurveyPlan`](https://docs.rs/eeruf-core/latest/eeruf_core/struct.SurveyPlan.html). So an edge is the sensor's own
 //! echo, which does not move, or the other's sound, which comes earlier by as much as the other fired earlier, or a
 //! stray. For each receiver the times from a firing to its edges are laid over each other; a time at which edges of
 //! different slots meet is a path if their number is improbable as strays (a binomial test, times the number of places
-//! at which a path was looked for). The best supported is taken first, and what it explains is taken away.
+//! at which a path was looked for). The best supported path is taken first, and its edges are removed.
 //!
 //! A log in which more than two sensors fire close to each other can be read as well, but is better left to
 //! [`diagnose`](crate::diagnose()).
@@ -20,7 +20,7 @@ use crate::firings::{Firing, FiringLog};
 pub struct PathSettings {
     /// Largest difference between edges of one path, in microseconds: about four times the jitter.
     pub tolerance_us: u32,
-    /// Number of paths that may be found by accident, on average, in the whole survey.
+    /// Expected number of paths found by accident in the whole survey.
     pub accidents: f64,
 }
 
@@ -38,14 +38,15 @@ pub struct Surveyed {
     pub sensors: usize,
     /// The paths, by receiver and sender, shortest first. A sensor's own echo is a path from itself.
     pub paths: Vec<FoundPath>,
-    /// Number of edges, and how many of them no path explains.
+    /// Number of edges, and of those that no path explains.
     pub edges: (u32, u32),
-    /// The longest echo time of the log, in microseconds: sensors listen at least so long.
+    /// The longest echo time of the log in microseconds, and so the least listening time.
     pub window_us: u32,
-    /// For each pair, sender first and by sender, in how many slots both fired; for listeners, in how many they did.
+    /// For each pair, sender first and by sender, the number of slots in which both fired; for listeners, in which they
+    /// listened.
     slots: Vec<u32>,
-    /// For each pair likewise, where a path would have been seen with two offsets: each millisecond of its travel time,
-    /// bit 0 for less than 1 ms.
+    /// For each pair in the same order, the milliseconds of travel time at which a path would have been seen with two
+    /// offsets, as bits from 0.
     visible: Vec<u128>,
 }
 
@@ -61,8 +62,8 @@ impl Surveyed {
     }
 
     /// The share of the travel times below `until_us` (at most 128 ms) at which a path of the pair would have been seen
-    /// with two offsets or more: at others it comes within the receiver's dead time, or its own echo hides it, or
-    /// the survey has no such lead.
+    /// with at least two offsets. At the others the receiver is deaf, its own echo hides the path, or the survey has no
+    /// such lead.
     pub fn visible(&self, sender: u8, receiver: u8, until_us: u32) -> f64 {
         let all = (until_us / 1000).clamp(1, 128);
         let mask = if all == 128 { u128::MAX } else { (1 << all) - 1 };
@@ -76,7 +77,7 @@ impl Surveyed {
     }
 
     /// The pairs that hear each other within `until_us`, in either direction, with the longest such travel time in
-    /// microseconds: what has to be between their firings so that neither listens to the other's sound.
+    /// microseconds, which must lie between their firings so that neither hears the other's sound.
     pub fn conflicts(&self, until_us: u32) -> Vec<(u8, u8, f64)> {
         let mut conflicts = Vec::<(u8, u8, f64)>::new();
         let foreign = self.paths.iter().filter(|path| path.sender != path.receiver);
@@ -96,12 +97,12 @@ impl Surveyed {
 struct Heard {
     slot: u32,
     echo_us: Option<i64>,
-    /// Firings in the slot, its own too, and their times after it began to listen.
+    /// Firings in the slot, its own included, as times after it began to listen.
     fired: Vec<(u8, i64)>,
     is_explained: bool,
 }
 
-/// A place at which a path may be.
+/// A candidate for a path.
 struct Place {
     sender: u8,
     offsets: (u32, u32),
@@ -112,11 +113,11 @@ struct Place {
 
 /// The most paths to one receiver.
 const MOST_PATHS: usize = 200;
-/// Number of places of each sender that are looked at more closely before the best is taken.
+/// Number of places of each sender that are examined closely before the best is taken.
 const LOOKED_AT: usize = 4;
-/// A path supports an offset if it is heard in this share of the slots with that offset in which nothing hid it.
+/// Share of the unhidden slots with an offset in which a path must be heard to support that offset.
 const SUPPORTS: f64 = 0.5;
-/// Votes by slot begin here, beyond all offsets.
+/// Number from which on votes are by slot, beyond all offsets.
 const BY_SLOT: i64 = 1 << 40;
 
 /// Finds the paths between all sensors of a survey.
@@ -124,7 +125,7 @@ pub fn survey(log: &FiringLog, settings: &PathSettings) -> Surveyed {
     survey_while(log, settings, &|| true)
 }
 
-/// Like [`survey`], which ends early with what it has found once `keep_going` answers `false`.
+/// Surveys like [`survey`], and ends early with the results so far if `keep_going` returns `false`.
 pub fn survey_while(log: &FiringLog, settings: &PathSettings, keep_going: KeepGoing<'_>) -> Surveyed {
     let sensors = log.sensors();
     let rows = || log.firings.iter().chain(&log.listened);
@@ -171,7 +172,7 @@ struct Search {
     receiver: u8,
     heard: Vec<Heard>,
     sensors: usize,
-    /// The sensor hears nothing earlier.
+    /// Time before which the sensor hears nothing.
     dead_us: i64,
     window_us: i64,
     tolerance: i64,
@@ -203,7 +204,7 @@ impl Search {
         found
     }
 
-    /// The offset of a sender in a slot: when it fired, after the receiver did.
+    /// The offset of a sender in a slot: its firing time after the receiver's.
     fn offset(heard: &Heard, sender: u8) -> Option<i64> {
         heard.fired.iter().find(|fired| fired.0 == sender).map(|fired| fired.1)
     }
@@ -274,8 +275,8 @@ impl Search {
         Place { sender, offsets: counted, ln_accident, hits, trials: trials.len() as u32 }
     }
 
-    /// Readings that agree count once for each of these: the offset; but the slot for an own echo, which does not move,
-    /// and for a sensor that only listens while one other fires, whose sound it must be.
+    /// The vote of a reading; readings that agree count once for each vote. It is the offset; for an own echo, which
+    /// does not move, and for a sensor that only listens while one other fires, it is the slot.
     fn vote(&self, heard: &Heard, sender: u8, offset: i64) -> i64 {
         let listens_to_one = heard.fired.len() == 1;
         if sender == self.receiver || listens_to_one {
@@ -285,8 +286,8 @@ impl Search {
         }
     }
 
-    /// The probability that a stray edge supports a path at one offset: strays may be all edges of the slots in which
-    /// the sender fired that are still to be explained, but for the path's own.
+    /// The probability that a stray edge supports a path at one offset. Possible strays are all unexplained edges of
+    /// the slots in which the sender fired, except the path's own.
     fn accident(&self, sender: u8, hits: usize) -> f64 {
         let slots = || self.heard.iter().filter(|heard| Self::offset(heard, sender).is_some());
         let open = slots().filter(|heard| heard.echo_us.is_some() && !heard.is_explained).count();
@@ -326,7 +327,8 @@ impl Search {
         }
     }
 
-    /// In how many slots a sender could be heard, and at which travel times, in milliseconds, with two offsets.
+    /// Number of slots in which a sender could be heard, and the travel times, in milliseconds, at which it could with
+    /// two offsets.
     fn coverage(&self, sender: u8) -> (u32, u128) {
         // At each offset, the latest edge: until then nothing hid another's sound.
         let offsets = self.heard.iter().filter_map(|heard| {

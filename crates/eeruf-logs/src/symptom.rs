@@ -1,4 +1,4 @@
-//! The words for what strikes about one sensor: of `eeruf logs`, of a ring's own log, and in Python.
+//! Symptoms of one sensor, with the words for `eeruf logs`, for a ring's own log, and for Python.
 
 /// Symptoms of one sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,7 +12,7 @@ pub enum Symptom {
     Constant,
     /// The values come in coarse steps.
     Coarse,
-    /// The readings are near nothing.
+    /// The readings are scattered over all values.
     Scatters,
     /// The sensor reads the echo of its own firing before.
     Stale,
@@ -35,7 +35,7 @@ impl Symptom {
     }
 }
 
-/// A symptom of one sensor, with what speaks for it.
+/// A symptom of one sensor, with its evidence.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Finding {
     /// The sensor, from 0.

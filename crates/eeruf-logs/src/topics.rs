@@ -1,4 +1,4 @@
-//! Messages of topics: finds out which sensor each reading is of.
+//! Messages of topics, and the assignment of their readings to sensors.
 
 use std::path::Path;
 
@@ -12,14 +12,14 @@ pub(crate) struct Topic {
     name: String,
     decoding: Option<(Encoding, Kind)>,
     frames: Vec<Frame>,
-    /// The frame after the last one: rings often come in turn.
+    /// Index of the frame after the last one, since rings often fire in turn.
     next: usize,
     undecoded: u64,
     beams: u64,
     infrared: u64,
-    /// The topic of which this one is what a filter made.
+    /// The topic whose filtered readings this one holds.
     judged: Option<(String, u64)>,
-    /// The unit of numbers, once it is known.
+    /// The unit of the numbers, once it is known.
     unit: Option<RangeUnit>,
     is_asked: bool,
 }
@@ -31,7 +31,7 @@ struct Frame {
 }
 
 impl Sink<'_> {
-    /// A topic by its name, the name of its type, the text of its schema if there is one, and its encoding.
+    /// A topic, given its name, the name of its type, its schema if there is one, and its encoding.
     pub(crate) fn topic(
         &mut self,
         name: &str,
@@ -78,7 +78,7 @@ impl Sink<'_> {
         }
     }
 
-    /// A message on a topic, recorded at this time.
+    /// Adds a message on a topic, recorded at this time.
     pub(crate) fn message(&mut self, topic: &mut Topic, recorded_ns: u64, message: &[u8]) {
         let Some((encoding, kind)) = topic.decoding.clone() else { return };
         if let Some((base, left_out)) = &mut topic.judged
@@ -141,7 +141,7 @@ impl Sink<'_> {
         }
     }
 
-    /// Warns of ranges that no ultrasonic sensor has: centimetres in place of metres.
+    /// Warns about ranges that no ultrasonic sensor has, such as centimetres instead of metres.
     fn doubt(&mut self, topic: &str) {
         /// The farthest that a sensor in air sees is about 11 m.
         const FARTHEST_M: f64 = 25.0;
@@ -156,7 +156,7 @@ impl Sink<'_> {
         }
     }
 
-    /// Turns numbers of the buffer into metres, and zero, negative and far ones into no echo.
+    /// Converts numbers of the buffer to metres, and zero, negative and far ones to no echo.
     fn scale(&mut self, topic: &mut Topic, known: Option<RangeUnit>) {
         let most = self
             .of_topics
@@ -189,7 +189,7 @@ impl Sink<'_> {
         }
     }
 
-    /// No more messages will come on a topic.
+    /// Ends a topic.
     pub(crate) fn close(&mut self, topic: &Topic) {
         let lost = [
             (topic.undecoded, "a length that does not fit their type".to_owned()),
@@ -211,7 +211,7 @@ impl Sink<'_> {
         }
     }
 
-    /// A file says how many messages it has, and the number found before it.
+    /// Number of messages that a file claims to have, and the number found before it.
     pub(crate) fn counted(&mut self, file: &Path, counted: u64, before: u64) {
         let missing = (before + counted).saturating_sub(self.of_topics.found);
         if missing > 0 {
@@ -221,12 +221,12 @@ impl Sink<'_> {
 }
 
 impl Topic {
-    /// Returns true if its messages hold readings, as far as its type says.
+    /// Returns true if its messages hold readings, judging by their type.
     pub(crate) const fn has_readings(&self) -> bool {
         self.decoding.is_some()
     }
 
-    /// The place of a frame among those of the topic.
+    /// The index of a frame among those of the topic.
     fn frame(&mut self, id: &[u8]) -> usize {
         let known = match self.frames.get(self.next) {
             Some(frame) if frame.id == id => Some(self.next),

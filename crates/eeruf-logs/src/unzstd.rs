@@ -1,11 +1,11 @@
-//! Unpacks zstd with one context for all messages and chunks of a file: to make one takes longer than to unpack a
-//! message.
+//! Unpacking of zstd with one context for all messages and chunks of a file, since making one takes longer than
+//! unpacking a message.
 
 use zstd::zstd_safe::{DCtx, InBuffer, OutBuffer, ResetDirective, get_error_name};
 
 /// The largest message that is unpacked, in bytes.
 pub(crate) const LARGEST_MESSAGE: usize = 1 << 26;
-/// The least room for what comes out, in bytes.
+/// The least buffer for unpacked bytes.
 const ROOM: usize = 1 << 12;
 
 /// A context, made on first use.
@@ -13,8 +13,8 @@ const ROOM: usize = 1 << 12;
 pub(crate) struct Unzstd(Option<DCtx<'static>>);
 
 impl Unzstd {
-    /// Unpacks one frame or more. Of those that are damaged or cut, `unpacked` has what came before that. Room is made
-    /// for what comes out, not for what a frame says that it holds.
+    /// Unpacks one or more frames. If one is damaged or cut, `unpacked` has the bytes before that. The buffer grows
+    /// with the output, not with the size that a frame claims.
     pub(crate) fn unpack(&mut self, packed: &[u8], limit: usize, unpacked: &mut Vec<u8>) -> Result<(), String> {
         unpacked.clear();
         if self.0.is_none() {
@@ -57,19 +57,19 @@ mod tests {
 
     use super::*;
 
-    /// A frame as rosbag2 writes it, which says how much it holds.
+    /// A frame as rosbag2 writes it, which states its size.
     fn frame(bytes: &[u8]) -> Vec<u8> {
         zstd::bulk::compress(bytes, 1).unwrap()
     }
 
-    /// A frame that does not say how much it holds.
+    /// A frame that does not state its size.
     fn stream(bytes: &[u8]) -> Vec<u8> {
         let mut encoder = zstd::stream::Encoder::new(vec![], 1).unwrap();
         encoder.write_all(bytes).unwrap();
         encoder.finish().unwrap()
     }
 
-    /// A frame of three bytes that says that it holds 4 GiB; in one segment it also asks for that much memory.
+    /// A frame of three bytes that claims to hold 4 GiB; as a single segment it also asks for that much memory.
     fn boast(one_segment: bool) -> Vec<u8> {
         let mut frame = vec![0x28, 0xb5, 0x2f, 0xfd];
         // The length as eight bytes, and before it a window of 2 MiB if it is not all in one segment.

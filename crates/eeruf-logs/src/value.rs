@@ -10,19 +10,19 @@ pub(crate) enum Value {
     TooClose,
 }
 
-/// Words for no echo, parted by bars; the first is nothing at all.
+/// Words for no echo, separated by bars; the first is the empty text.
 const NO_ECHO: &str = "\
     |none|null|nil|nan|-nan|na|n/a|inf|+inf|infinity|+infinity|no echo|noecho|no_echo|timeout|time out|\
     out of range|out_of_range|oor|err|error|undefined|invalid|nothing|.inf|.nan|<na>|unknown|#n/a";
 
-/// Returns true for a word that logs write where no echo came.
+/// Returns true for a word that logs write for no echo.
 pub(crate) fn is_no_echo(text: &str) -> bool {
     // Dashes in the places of digits.
     let is_blank = text.len() <= 12 && text.contains('-') && text.trim_matches(['-', '.']).is_empty();
     is_blank || text.len() <= 12 && NO_ECHO.split('|').any(|word| text.eq_ignore_ascii_case(word))
 }
 
-/// A finite decimal number, and nothing else: `0x10`, `1_000` and `1e999` are none.
+/// A finite decimal number, and nothing else: `0x10`, `1_000` and `1e999` are refused.
 pub(crate) fn number(text: &str, decimal_comma: bool) -> Option<f64> {
     let bytes = text.as_bytes();
     if !bytes.iter().any(u8::is_ascii_digit) {
@@ -36,7 +36,7 @@ pub(crate) fn number(text: &str, decimal_comma: bool) -> Option<f64> {
     parsed.is_finite().then_some(parsed)
 }
 
-/// The number before a unit, as `40cm` or `40 cm`, and the unit if there is one.
+/// The number before a unit, as in `40cm` or `40 cm`, and the unit if there is one.
 pub(crate) fn with_unit(text: &str, decimal_comma: bool) -> Option<(f64, Option<RangeUnit>)> {
     if let Some(number) = number(text, decimal_comma) {
         return Some((number, None));
@@ -46,7 +46,7 @@ pub(crate) fn with_unit(text: &str, decimal_comma: bool) -> Option<(f64, Option<
     number(text[..end].trim_end(), decimal_comma).map(|number| (number, Some(unit)))
 }
 
-/// The unit of ranges that a word names.
+/// The unit of ranges with this name.
 pub(crate) fn unit(word: &str) -> Option<RangeUnit> {
     let word = word.trim_matches(['(', ')', '[', ']', '.']).to_lowercase();
     Some(match word.as_str() {
@@ -60,7 +60,7 @@ pub(crate) fn unit(word: &str) -> Option<RangeUnit> {
     })
 }
 
-/// The range in a cell; `None` for what is neither a number nor a word for no echo.
+/// The range in a cell; `None` if it is neither a number nor a word for no echo.
 pub(crate) fn range(text: &str, decimal_comma: bool) -> Option<(Value, Option<RangeUnit>)> {
     // No word for no echo begins so.
     if text.starts_with(|letter: char| letter.is_ascii_digit()) {
@@ -92,7 +92,7 @@ const HOUR_NS: u64 = 3_600_000_000_000;
 const DAY_NS: u64 = 24 * HOUR_NS;
 const MONTHS: [&str; 12] = ["Jan", "Feb", "Mar", "Apr", "May", "Jun", "Jul", "Aug", "Sep", "Oct", "Nov", "Dec"];
 
-/// Nanoseconds of a date, a time of day, or both, also by a clock of 12 hours.
+/// Nanoseconds of a date, a time of day, or both, also with a 12-hour clock.
 pub(crate) fn calendar_ns(text: &str) -> Option<u64> {
     let text = text.trim();
     let text = text.strip_suffix(" UTC").unwrap_or(text);
@@ -142,8 +142,8 @@ fn zone(time: &str) -> Option<(&str, i64)> {
     Some((&time[..at], if time.as_bytes()[at] == b'-' { -seconds } else { seconds }))
 }
 
-/// Days from 1970 to `2024-01-31`, `2024/01/31`, `31.01.2024` or `1/31/2024`. Of two numbers that may both be a month,
-/// the first is one after a slash, and the second else.
+/// Days from 1970 to `2024-01-31`, `2024/01/31`, `31.01.2024` or `1/31/2024`. If two numbers can be the month, it is
+/// the first one with slashes, and otherwise the second.
 fn days(date: &str) -> Option<i64> {
     let parts = |by: char| -> Option<[u32; 3]> {
         let mut parts = date.split(by).map(|part| part.parse::<u32>().ok());
@@ -166,7 +166,7 @@ fn days(date: &str) -> Option<i64> {
     Some(365 * y + y / 4 - y / 100 + y / 400 + of_year - 719_468)
 }
 
-/// `12:00:01.100`, `12:00:01,100`, `12:00:01`, or `00:01.1`, as spreadsheets write a short time.
+/// Nanoseconds of `12:00:01.100`, `12:00:01,100`, `12:00:01`, or `00:01.1`, as spreadsheets write a short time.
 fn time_of_day_ns(text: &str) -> Option<u64> {
     let mut parts = text.split(':');
     let (hours, minutes, seconds) = match (parts.next()?, parts.next()?, parts.next()) {
@@ -186,7 +186,7 @@ fn time_of_day_ns(text: &str) -> Option<u64> {
     Some(s * 1_000_000_000 + ns)
 }
 
-/// `Jan 31 12:00:01 robot node[7]: `, as syslog begins a line, or the time alone, in a year without a name.
+/// The time of `Jan 31 12:00:01 robot node[7]: `, the prefix of syslog, or of the time alone, without a year.
 fn syslog(line: &str) -> Option<(u64, &str)> {
     let word = |text: &'_ str| text.find(' ').map(|end| (end, text[end..].trim_start().len()));
     let month = 1 + MONTHS.iter().position(|name| line.starts_with(name))?;
@@ -208,7 +208,7 @@ fn after_program(line: &str) -> Option<&str> {
     (program.starts_with(char::is_alphabetic) && words.next().is_none()).then_some(said.trim_start())
 }
 
-/// `I (1234) tag: `, as ESP-IDF begins a line: milliseconds since the start.
+/// The time of `I (1234) tag: `, the prefix of ESP-IDF: milliseconds since the start.
 fn esp_idf(line: &str) -> Option<(u64, &str)> {
     let (ms, rest) = line.strip_prefix(['E', 'W', 'I', 'D', 'V'])?.strip_prefix(" (")?.split_once(") ")?;
     let (_, said) = rest.split_once(": ")?;
@@ -240,7 +240,7 @@ pub(crate) fn elapsed_ns(text: &str) -> Option<u64> {
     (0.0..1e10).contains(&time_s).then(|| (time_s * 1e9).round() as u64)
 }
 
-/// Nanoseconds of a time in brackets: a date, seconds, seconds and those since the line before, or a time with a unit.
+/// Nanoseconds of a time in brackets: a date, seconds, seconds with those since the line before, or a time with a unit.
 fn bracketed_ns(inner: &str) -> Option<u64> {
     let seconds = |text: &str| number(text, false).filter(|&s| text.contains('.') && (0.0..1e10).contains(&s));
     // A level and the name of a program may follow.

@@ -47,7 +47,7 @@ impl McapWriter {
         Ok(Self { file: file.to_owned(), writer, schemas, channels, message: Vec::new() })
     }
 
-    /// Writes a reading onto a topic, at time 0 if it has none. A frame is at most 4 GB long.
+    /// Writes a reading to a topic, at time 0 if it has none. A frame is at most 4 GB long.
     ///
     /// # Errors
     /// If the file cannot be written.
@@ -56,8 +56,8 @@ impl McapWriter {
         self.write(topic, &ros2::RANGE, at_ns, |out| ros2::range(out, frame, reading))
     }
 
-    /// Writes one firing of a ring onto a topic, for [`FiringLog::read`](crate::FiringLog::read); the clock of its
-    /// times is named, and the message's own time is in nanoseconds.
+    /// Writes one firing of a ring to a topic, for [`FiringLog::read`](crate::FiringLog::read), with the name of its
+    /// clock; the message's own time is in nanoseconds.
     ///
     /// # Errors
     /// If the file cannot be written.
@@ -88,7 +88,7 @@ impl McapWriter {
         self.write(topic, &ros2::ODOMETRY, at_ns, |out| ros2::odometry(out, at_ns, of, linear_m_s, angular_rad_s))
     }
 
-    /// Writes what is drawn, a `visualization_msgs/msg/MarkerArray`.
+    /// Writes markers, as a `visualization_msgs/msg/MarkerArray`.
     ///
     /// # Errors
     /// If the file cannot be written.
@@ -121,7 +121,7 @@ impl McapWriter {
         self.writer.write_to_known_channel(&header, &self.message).map_err(|error| unwritten(&self.file, &error))
     }
 
-    /// Writes what is left, and the index.
+    /// Writes the rest of the file, and the index.
     ///
     /// # Errors
     /// If the file cannot be written.

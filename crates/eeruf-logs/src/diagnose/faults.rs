@@ -1,4 +1,4 @@
-//! Sensors that hear nothing of what they should.
+//! Deaf sensors.
 //!
 //! Nothing in range is not deaf. A sensor is called deaf where the log rules the former out: others hear its sound, and
 //! sound takes as long back as there, so that it should hear theirs along the same paths.
@@ -9,11 +9,11 @@ use super::timeline::Timeline;
 use super::{FoundPath, Settings};
 use crate::symptom::{Finding, Symptom};
 
-/// A path heard in this share of its arrivals there is heard in half as many back, at least.
+/// Least ratio of the share of arrivals heard on the way back to that on the way there.
 const BACK: f64 = 0.5;
-/// The probability of silence by accident, at most.
+/// Greatest probability that the silence is an accident.
 const ACCIDENT: f64 = 0.001;
-/// No sensor hears others sooner after it fired, in microseconds.
+/// Time in microseconds after a sensor's firing before which it hears no other sensor.
 const DEAF_US: i64 = 3000;
 
 /// The deaf sensors of a ring.
@@ -37,8 +37,7 @@ pub(super) fn faults(
     deaf.collect()
 }
 
-/// Returns true if others hear a silent sensor along paths, loud or not, on which it would hear them but for an
-/// accident.
+/// Returns true if others hear a silent sensor along paths on which it should hear them, except by an accident.
 fn is_unheard(silent: u8, paths: &[FoundPath], timeline: &Timeline, settings: &Settings) -> bool {
     let out = paths.iter().filter(|path| path.sender == silent && path.receiver != silent);
     let ln_accident = |path: &FoundPath| {
@@ -48,7 +47,7 @@ fn is_unheard(silent: u8, paths: &[FoundPath], timeline: &Timeline, settings: &S
     out.map(ln_accident).sum::<f64>() < ACCIDENT.ln()
 }
 
-/// Arrivals at a path's sender on the way back that were heard, and all that nothing earlier hid.
+/// Number of arrivals heard at a path's sender on the way back, and of all arrivals that nothing earlier hid.
 fn heard_back(path: &FoundPath, timeline: &Timeline, tolerance: i64) -> (u32, u32) {
     let (mut heard, mut of) = (0, 0);
     let lasts = timeline.lasts(path);

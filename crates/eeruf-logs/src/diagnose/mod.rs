@@ -1,21 +1,21 @@
-//! Diagnosis of a ring from its own log: which sensors fool each other, along paths of which length, since when, and
-//! how sure that is.
+//! Diagnosis of a ring from its own log: which sensors fool each other, along paths of what length, since when, and how
+//! certainly.
 //!
 //! A path from sensor x to sensor y takes sound the same time whenever x fires. So if y's readings came along it, the
 //! time from x's firing to the edge at y is the same for all of them, however the firings of x and y move against each
-//! other; for readings that came otherwise it moves with the firings. For each pair the times from x's firings to y's
-//! edges are laid over each other, and a time at which many of them meet is a path.
+//! other; for all other readings it moves with the firings. For each pair the times from x's firings to y's edges are
+//! laid over each other, and a time at which many of them meet is a path.
 //!
 //! Readings in which the two firings stand alike repeat each other and prove nothing. So what counts is *offsets*: how
-//! many different times between the two firings support a path. By accident an edge falls within the tolerance of a
-//! predicted one with a small probability, which the readings themselves tell; that as many offsets agree by accident
-//! has then a binomial probability. It is multiplied by the number of places at which a path was looked for
-//! (Bonferroni), and a path counts as found if fewer than [`Settings::accidents`] such paths are expected in the whole
-//! log by accident. That takes many phases, or lags that move: with two phases there are two offsets, and no pair can
-//! be named.
+//! many different times between the two firings support a path. The probability that an edge falls within the tolerance
+//! of a predicted one by accident is small and follows from the readings; that as many offsets agree by accident then
+//! has a binomial probability. It is multiplied by the number of places at which a path was looked for (Bonferroni),
+//! and a path counts as found if fewer than [`Settings::accidents`] such paths are expected in the whole log by
+//! accident. That takes many phases, or lags that move: with two phases there are two offsets, and no pair can be
+//! named.
 //!
-//! While the robot drives no time stays. Then a path is a line of a second, and readings are named one by one, by those
-//! around them: `moving`.
+//! While the robot drives, these times change. A path is then a line over a second, and readings are named one by one
+//! from the readings around them: `moving`.
 
 mod faults;
 mod moving;
@@ -48,7 +48,7 @@ pub struct Settings {
     pub max_travel_us: u32,
     /// Largest difference between a reading and what a path predicts, in microseconds: about four times the jitter.
     pub tolerance_us: u32,
-    /// Number of paths that may be found by accident, on average, in the whole log.
+    /// Expected number of paths found by accident in the whole log.
     pub accidents: f64,
     /// Confidence from which a sender is named, 0 to 1.
     pub sure: f64,
@@ -61,13 +61,13 @@ impl Default for Settings {
     }
 }
 
-/// Asked now and then whether to go on; once it answers `false`, work ends with what it has.
+/// A function that is called sometimes; if it returns `false`, work ends with the results so far.
 pub type KeepGoing<'a> = &'a dyn Fn() -> bool;
 
 impl Settings {
-    /// The usual settings, with the tolerance that the readings' scatter takes: four times it, at least 75 us.
+    /// The usual settings, with a tolerance of four times the readings' scatter, at least 75 us.
     pub fn of(log: &FiringLog) -> Self {
-        /// Successive echoes of a sensor that differ by more are of different paths.
+        /// Difference of successive echoes of a sensor above which they are of different paths.
         const OTHER_US: i64 = 1000;
         /// The lower quartile of absolute differences of two normal variables, in their standard deviations.
         const QUARTILE: f64 = 0.4506;
@@ -94,7 +94,7 @@ impl Settings {
 pub struct FoundPath {
     /// The sensor that sends, from 0.
     pub sender: u8,
-    /// The sensor that hears it, from 0.
+    /// Travel time of the sound, in microseconds; for a path that moves, at the middle of its times.
     pub receiver: u8,
     /// Travel time of the sound, in microseconds; of a path that moves, at the middle of its times.
     pub travel_us: f64,
@@ -102,14 +102,15 @@ pub struct FoundPath {
     pub travel_error_us: f64,
     /// Scatter of single readings, rms, in microseconds.
     pub scatter_us: f64,
-    /// Number of different offsets between the two firings that support it, and of those in which it could be heard.
+    /// Number of different offsets between the two firings that support the path, and of those at which it could be
+    /// heard.
     pub offsets: (u32, u32),
-    /// Number of paths with as much support that are expected by accident in the whole log. Of a path that moves, the
+    /// Number of paths with as much support that are expected by accident in the whole log. For a path that moves, the
     /// probability that the surest of its readings did not come along it.
     pub accidents: f64,
     /// Readings that came along it.
     pub readings: u32,
-    /// The share of readings that heard it, among those in which nothing earlier hid it.
+    /// The share of readings that heard the path, among those in which nothing earlier hid it.
     pub heard: f64,
     /// The periods of the first and the last reading that came along it.
     pub periods: (u32, u32),
@@ -117,30 +118,30 @@ pub struct FoundPath {
     pub rate_us_s: Option<f64>,
 }
 
-/// Findings of a log about a ring.
+/// Findings about a ring from its log.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Diagnosis {
     /// The paths, by receiver, best supported first. A sensor's own echo is a path from itself.
     pub paths: Vec<FoundPath>,
-    /// For each firing of the log, whose sound its reading is, if that is sure enough.
+    /// For each firing of the log, the sender of its reading, if that is certain enough.
     pub named: Vec<Option<Named>>,
-    /// Sounds that each sensor hears.
+    /// The sounds that each sensor hears.
     pub hearing: Vec<Hearing>,
     /// Deaf sensors.
     pub faults: Vec<Finding>,
-    /// True if the robot moved: odometry says so, or ranges of the beginning are gone at the end.
+    /// True if the robot moved: odometry says so, or early ranges are gone at the end.
     pub moved: bool,
-    /// The most offsets at which a reading could come from a firing of another sensor, over all pairs.
+    /// The largest number of offsets at which a reading could come from another sensor's firing, over all pairs.
     pub most_offsets: u32,
 }
 
 impl Diagnosis {
-    /// Returns true if firings move against each other enough to tell senders apart by what is heard.
+    /// Returns true if firings move against each other enough to tell senders apart.
     pub fn firings_move(&self) -> bool {
         self.most_offsets > timeline::OFFSETS_OF_TWO_PHASES
     }
 
-    /// The sensors that hear nothing and are not called deaf: nothing is in their range, or they are.
+    /// The sensors that hear nothing and are not called deaf: either nothing is in their range, or they are deaf.
     pub fn silent(&self) -> Vec<u8> {
         let is_named = |sensor: u8| self.faults.iter().any(|fault| fault.sensor == usize::from(sensor));
         let silent = self.hearing.iter().filter(|of| of.is_silent && !is_named(of.sensor));
@@ -148,12 +149,12 @@ impl Diagnosis {
     }
 }
 
-/// Finds the paths of a ring, names the sender of each reading where that is sure enough, and says what is broken.
+/// Finds the paths of a ring, names the sender of each reading if that is certain enough, and finds faults.
 pub fn diagnose(log: &FiringLog, settings: &Settings) -> Diagnosis {
     diagnose_while(log, settings, &|| true)
 }
 
-/// Like [`diagnose`], which ends early with what it has found once `keep_going` answers `false`.
+/// Diagnoses like [`diagnose`], and ends early with the results so far if `keep_going` returns `false`.
 pub fn diagnose_while(log: &FiringLog, settings: &Settings, keep_going: KeepGoing<'_>) -> Diagnosis {
     let timeline = Timeline::of(log, settings);
     let mut paths = Vec::new();

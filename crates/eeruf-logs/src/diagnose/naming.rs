@@ -14,10 +14,10 @@ pub struct Named {
     pub sure: f64,
 }
 
-/// Half the stretch of echo times over which the density of readings that no path explains is taken, in microseconds.
+/// Half width of the interval of echo times for the density of readings that no path explains, in microseconds.
 const NEAR_US: f64 = 2000.0;
 
-/// For each reading the paths that predict it, weighed by how often they are heard and how well they fit, against the
+/// For each reading, weighs the paths that predict it, by how often they are heard and how well they fit, against the
 /// density of readings that no path explains, which are marked.
 pub(super) fn name_senders(
     receiver: u8,

@@ -1,4 +1,4 @@
-//! Looks for the paths to one receiver: best supported first, and what it explains is taken away.
+//! Finds the paths to one receiver: the best supported first; then its readings are removed.
 
 use std::collections::HashMap;
 
@@ -7,19 +7,19 @@ use super::statistics::{groups, ln_at_least, median};
 use super::timeline::{Heard, Timeline};
 use super::{FoundPath, KeepGoing, Settings};
 
-/// The half width of the stretch of echo times over which the density of accidental readings is taken, in microseconds.
+/// Half width of the interval of echo times for the density of accidental readings, in microseconds.
 const NEAR_US: i64 = 2000;
-/// Fewer firings of a receiver show no path.
+/// Least number of a receiver's firings for finding a path.
 const FEWEST: usize = 20;
 /// The most paths to one receiver.
 const MOST_PATHS: usize = 60;
-/// A path supports an offset if it is heard in this share of the readings there that nothing earlier hid: a loud path,
-/// or a faint one.
+/// Shares of unhidden readings in which a path must be heard at an offset for support: for a loud path, and for a faint
+/// one.
 const SUPPORTS: [f64; 2] = [0.5, 0.2];
-/// Number of places of each sender that are looked at more closely before the best is taken.
+/// Number of places of each sender that are examined closely before the best is taken.
 const LOOKED_AT: usize = 3;
 
-/// The possible sender: a sensor, or the receiver itself by this very firing, or by an earlier one.
+/// A possible sender: a sensor, or the receiver itself by this firing or an earlier one.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Source {
     Other(u8),
@@ -40,7 +40,7 @@ struct Travel {
 /// Support of a path.
 struct Support {
     offsets: (u32, u32),
-    /// The natural logarithm of the probability of as much support by accident.
+    /// The logarithm of the probability of as much support by accident.
     ln_accident: f64,
     matched: Vec<usize>,
     heard: f64,
@@ -50,9 +50,9 @@ struct Search<'a> {
     receiver: u8,
     timeline: &'a Timeline,
     heard: &'a [Heard],
-    /// Readings that are explained by a path that was found.
+    /// Readings that a found path explains.
     explained: Vec<bool>,
-    /// The echo times of those that are not, and of all, sorted.
+    /// The sorted echo times of unexplained readings, and of all readings.
     open: Vec<i64>,
     all: Vec<i64>,
     silent: usize,
@@ -99,14 +99,15 @@ pub(super) fn paths_to(
 }
 
 impl Search<'_> {
-    /// The echo times that are still to be explained.
+    /// Updates the echo times that are still to be explained.
     fn refresh(&mut self) {
         let open = self.heard.iter().zip(&self.explained).filter(|(_, explained)| !**explained);
         self.open = open.filter_map(|(heard, _)| heard.echo_us).collect();
         self.open.sort_unstable();
     }
 
-    /// The probability that a reading that is not earlier than `echo_us` lies within the tolerance of it by accident.
+    /// The probability that a reading, if it is not earlier than `echo_us`, lies within the tolerance of it by
+    /// accident.
     fn accident(&self, echo_us: i64) -> f64 {
         let below = |limit: i64| self.open.partition_point(|&open| open < limit);
         let near = below(echo_us + NEAR_US) - below(echo_us - NEAR_US);
@@ -116,7 +117,7 @@ impl Search<'_> {
         (share * self.tolerance as f64 / NEAR_US as f64).min(0.9)
     }
 
-    /// The firings of a source that a reading may have heard: when, after the receiver's own.
+    /// The firings of a source that a reading may have heard, as times after the receiver's own firing.
     fn offsets(&self, source: Source, heard: &Heard, until_us: i64) -> impl Iterator<Item = i64> + '_ {
         let (receiver, fired_us) = (self.receiver, heard.fired_us);
         let before = self.timeline.before(fired_us + until_us);
@@ -158,7 +159,7 @@ impl Search<'_> {
         best
     }
 
-    /// The places at which most offsets meet, with their number, most first.
+    /// The places at which most offsets meet, with their number, the largest first.
     fn crowded(&self, source: Source, travels: &[Travel]) -> Vec<(usize, i64)> {
         let mut places = Vec::new();
         let mut offsets = HashMap::<i64, u32>::new();
@@ -226,8 +227,8 @@ impl Search<'_> {
         Support { offsets, ln_accident, matched, heard }
     }
 
-    /// At how many offsets a path was heard in at least this share of the readings, of how many, and the mean chance of
-    /// an accident.
+    /// Number of offsets at which a path was heard in at least this share of the readings, number of all offsets, and
+    /// the mean chance of an accident.
     fn by_offset(&self, trials: &mut [(i64, bool, f64, usize)], share: f64) -> ((u32, u32), f64) {
         trials.sort_unstable_by_key(|trial| trial.0);
         let sorted: Vec<_> = trials.iter().map(|trial| trial.0).collect();
@@ -242,9 +243,9 @@ impl Search<'_> {
         ((supporting, groups.len() as u32), accidents / groups.len().max(1) as f64)
     }
 
-    /// Counts the offsets of a sensor's own echo. It stands still however the others' firings move, so what counts is
-    /// at how many offsets of another sensor it was heard, for that one of which these are fewest: its sound is the
-    /// other explanation.
+    /// Counts the offsets of a sensor's own echo. It does not move with others' firings, so the count is the number of
+    /// offsets to another sensor at which it was heard, for the sensor with the fewest: that sensor's sound is the
+    /// alternative explanation.
     fn own_offsets(&self, trials: &[(i64, bool, f64, usize)], share: f64) -> ((u32, u32), f64) {
         let accident = trials.iter().map(|trial| trial.2).sum::<f64>() / trials.len().max(1) as f64;
         let mut fewest = (u32::MAX, 0);
@@ -271,7 +272,7 @@ impl Search<'_> {
         (offsets, accident)
     }
 
-    /// A path is found: its readings are explained.
+    /// Records a found path: its readings are explained.
     fn take(&mut self, source: Source, travel_us: i64, support: &Support, accidents: f64) -> FoundPath {
         let travel = |search: &Self, reading: usize| {
             let heard = &search.heard[reading];

@@ -1,4 +1,4 @@
-//! Sounds of each sensor: its own echo, others' sound, or what no path explains; and the phases in which it is blind.
+//! Sounds of each sensor (its own echo, others' sound, unexplained echoes), and the phases in which it is blind.
 
 use std::collections::BTreeMap;
 
@@ -13,27 +13,27 @@ pub struct Hearing {
     pub sensor: u8,
     /// Firings with any echo.
     pub echoes: Share,
-    /// Firings whose reading is surely its own echo.
+    /// Firings whose reading is certainly its own echo.
     pub own: Share,
-    /// Firings whose reading is surely another sensor's sound.
+    /// Firings whose reading is certainly another sensor's sound.
     pub foreign: Share,
-    /// Firings with an echo that cannot surely be named, of those with an echo: several paths fit, or none.
+    /// Share of firings with an echo whose sender is uncertain: several paths fit, or none.
     pub unnamed: Share,
-    /// Firings with an echo that fits no path, of those with an echo.
+    /// Share of firings with an echo that fits no path.
     pub unexplained: Share,
     /// True if it hears nothing: nothing is in its range, or it is deaf.
     pub is_silent: bool,
     /// True if its own echo was found as a path.
     pub has_own_path: bool,
-    /// The phases in which it fired at least five times and its own echo was never first, with the number of firings.
+    /// The phases with at least five firings in which its own echo was never first, with the number of firings.
     pub blind_phases: Vec<(u8, u32)>,
 }
 
-/// A sensor with fewer firings is not judged.
+/// Number of firings below which a sensor is not judged.
 const FEW: u32 = 50;
-/// A deaf sensor has an echo in fewer of its firings.
+/// Share of firings with an echo below which a sensor is deaf.
 const DEAF: f64 = 0.02;
-/// Fewer firings in a phase say nothing about it.
+/// Number of firings below which a phase is not judged.
 const FEW_IN_PHASE: u32 = 5;
 
 pub(super) fn hearing(

@@ -10,7 +10,7 @@ pub(super) fn ln_factorial(n: f64) -> f64 {
     (n + 0.5) * n.ln() - n + 0.5 * (2.0 * core::f64::consts::PI).ln() + tail
 }
 
-/// The natural logarithm of the probability that at least `k` of `n` happen, each with the probability `p`.
+/// The logarithm of the probability of at least `k` successes in `n` trials, each with the probability `p`.
 pub(crate) fn ln_at_least(k: u32, n: u32, p: f64) -> f64 {
     if k == 0 || p >= 1.0 {
         return 0.0;
@@ -36,8 +36,7 @@ pub(crate) fn median(values: &mut [f64]) -> f64 {
     *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
-/// In how many groups sorted values fall, if each group spans no more than `span` from its first: the groups, as
-/// ranges of places.
+/// Groups of sorted values, each at most `span` wide from its first: ranges of places.
 pub(crate) fn groups(sorted: &[i64], span: i64) -> Vec<core::ops::Range<usize>> {
     let mut groups: Vec<core::ops::Range<usize>> = Vec::new();
     for (place, &value) in sorted.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! The firings of a log as the search for paths needs them.
+//! The firings of a log in the form for finding paths.
 
 use std::collections::BTreeMap;
 
@@ -18,16 +18,16 @@ pub(super) struct Heard {
     pub(super) echo_us: Option<i64>,
 }
 
-/// At more offsets than this two sensors fire only if gaps are random: two phases have four, and as many again where a
-/// loop is late now and then.
+/// Number of offsets above which two sensors must have random gaps: two phases have four, and as many again if a loop
+/// is sometimes late.
 pub(super) const OFFSETS_OF_TWO_PHASES: u32 = 8;
 
 /// All firings in order of time, and each sensor's own.
 pub(super) struct Timeline {
-    /// When, and who.
+    /// Instants and sensors of the firings.
     firings: Vec<(i64, u8)>,
     heard: Vec<Vec<Heard>>,
-    /// The longest echo time of any reading: for so long sensors listen, at least.
+    /// The longest echo time of any reading, and so the least listening time.
     pub(super) window_us: i64,
     max_travel_us: i64,
     /// True if the ring fires in more than two phases or with random gaps, so that others' sound moves from firing to
@@ -65,7 +65,7 @@ impl Timeline {
         &self.heard[usize::from(receiver)]
     }
 
-    /// Returns the time when the reading of a firing, by its place in the log, came to its line.
+    /// Returns the time at which the reading of a firing, given by its place in the log, reached its line.
     fn edge_us(&self, line: u8, place: u32) -> i64 {
         let heard = self.heard_by(line);
         let of = heard.binary_search_by_key(&(place as usize), |of| of.firing).ok().map(|of| heard[of]);
@@ -80,11 +80,11 @@ impl Timeline {
         }
     }
 
-    /// Returns true if readings of the first third of the log do not come back in the last one: of the pairs of firings
-    /// of one sensor, one from each third, that follow another sensor's alike, hardly any have the same echo. Where
-    /// people walk before a ring that stands, more than a quarter have.
+    /// Returns true if readings of the first third of the log do not recur in the last third: among pairs of a sensor's
+    /// firings, one from each third, at the same time after another sensor's firing, hardly any have the same echo. If
+    /// the ring stands and people walk before it, more than a quarter have.
     pub(super) fn moved(&self) -> bool {
-        /// Echoes this close are of one thing that stands, in microseconds.
+        /// Difference of echoes, in microseconds, below which they are of one object at rest.
         const SAME_US: i64 = 75;
         const COMES_BACK: f64 = 0.2;
         const FEWEST: u32 = 20;
@@ -94,8 +94,8 @@ impl Timeline {
         comes_back.of >= FEWEST && comes_back.value() < COMES_BACK
     }
 
-    /// The share, among pairs of readings of one sensor, one from the first third of the log and one from the last,
-    /// that is the same; `by_others`: of those that follow another sensor's firing alike.
+    /// The share of equal readings among pairs of one sensor, one from the first third of the log and one from the
+    /// last; with `by_others`, among those at the same time after another sensor's firing.
     fn comes_back(&self, same_us: i64, by_others: bool) -> Share {
         let mut alike = BTreeMap::<_, Vec<Option<i64>>>::new();
         for (sensor, heard) in self.heard.iter().enumerate() {
@@ -115,7 +115,7 @@ impl Timeline {
         comes_back
     }
 
-    /// The most different offsets at which one sensor may hear another's sound.
+    /// The largest number of different offsets at which one sensor may hear another's sound.
     pub(super) fn most_offsets(&self, tolerance_us: i64) -> u32 {
         let mut most = 0;
         for heard in &self.heard {
@@ -133,8 +133,8 @@ impl Timeline {
         most
     }
 
-    /// Firings before a moment that may still be heard at it, latest first: when, and who. What fired at the very
-    /// moment counts.
+    /// Instants and sensors of firings that may be heard at a moment, latest first, including firings at that very
+    /// moment.
     pub(super) fn before(&self, moment_us: i64) -> impl Iterator<Item = (i64, u8)> + '_ {
         let end = self.firings.partition_point(|&(fired_us, _)| fired_us <= moment_us);
         let earliest = moment_us - self.max_travel_us;

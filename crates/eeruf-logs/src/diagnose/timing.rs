@@ -1,4 +1,4 @@
-//! Jitter, lateness and drift of firings, held against a fixed schedule.
+//! Jitter, lateness and drift of firings relative to a fixed schedule.
 
 use core::fmt;
 
@@ -7,19 +7,19 @@ use crate::firings::FiringLog;
 /// Adherence of firings to a schedule.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Timing {
-    /// Drift of the log's clock against the schedule's (firings come late more and more), in millionths.
+    /// Drift of the log's clock relative to the schedule's, positive if firings become later, in millionths.
     pub drift_ppm: f64,
     /// Standard error of the drift.
     pub drift_error_ppm: f64,
-    /// Scatter of firings around the schedule that drifts so, rms, in microseconds.
+    /// Scatter of firings around the drifting schedule, rms, in microseconds.
     pub jitter_us: f64,
-    /// One of 100 firings is late by more than this after the schedule that drifts so, in microseconds.
+    /// Lateness, relative to the drifting schedule, that 99 % of firings do not exceed, in microseconds.
     pub late_99_us: f64,
     /// Number of firings that were compared.
     pub firings: usize,
 }
 
-/// Reason why firings cannot be held against a schedule.
+/// Reason why firings cannot be compared with a schedule.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum TimingError {
@@ -30,12 +30,12 @@ pub enum TimingError {
         /// The phase, from 0.
         phase: u8,
     },
-    /// Firings that stand elsewhere than the schedule says: lags have moved, or it is another schedule.
+    /// Firings differ from the schedule: lags have moved, or it is another schedule.
     Moved {
         /// The share of firings that are more than 1 ms from the schedule.
         share: f64,
     },
-    /// Periods last longer or shorter by more than a clock may be wrong.
+    /// The length of periods differs by more than a clock's error.
     Rate {
         /// The log's period, as a share of the schedule's.
         share: f64,
@@ -67,13 +67,13 @@ impl fmt::Display for TimingError {
 
 impl core::error::Error for TimingError {}
 
-/// Clocks of microcontrollers without a crystal are wrong by a few hundredths.
+/// Largest plausible clock error, that of microcontrollers without a crystal.
 const MOST_DRIFT: f64 = 0.1;
 /// Distance from the schedule, in microseconds, beyond which a firing is of another one.
 const ELSEWHERE_US: f64 = 1000.0;
 
-/// Holds a log against a fixed schedule: the period in microseconds, and when a sensor (from 0) fires in a phase (from
-/// 0) after the start of its period.
+/// Compares a log with a fixed schedule: its period in microseconds, and a function for the firing time of a sensor in
+/// a phase (both from 0) after the start of the period.
 ///
 /// # Errors
 /// [`TimingError`] for a schedule that is not the ring's, or lags that moved.

@@ -1,5 +1,5 @@
-//! The answer to "is it crosstalk?" in words, in the order in which a reader needs it: the answer, whom it concerns,
-//! what to do now, and how sure it is.
+//! The answer to "is it crosstalk?" in words, in the order of a reader's needs: the answer, the sensors concerned, what
+//! to do now, and the reasons.
 
 use std::fmt::Write as _;
 
@@ -7,8 +7,8 @@ use super::{Examination, LogVerdict};
 use crate::pattern::{FiringPattern, Pattern};
 
 impl Examination {
-    /// The answer in words, as `eeruf logs` prints it: the verdict, whom it concerns, what to do, and why. `names` are
-    /// those of the sensors.
+    /// The answer in words, as `eeruf logs` prints it: the verdict, the sensors concerned, what to do, and why. `names`
+    /// are the sensors' names.
     pub fn answer(&self, firing: &FiringPattern, names: &[String]) -> String {
         let found = self;
         let name = |sensor: &usize| names.get(*sensor).map_or("?", String::as_str);

@@ -3,32 +3,32 @@
 
 use super::series::Scatter;
 
-/// A sensor that reads another's sound in most rounds, as far as sums or differences say.
+/// A sensor that reads another's sound in most rounds, judging by sums or differences.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Looped {
     pub(crate) sender: usize,
     pub(crate) receiver: usize,
-    /// The difference stays, and not the sum.
+    /// True if the difference is constant instead of the sum.
     pub(crate) is_difference: bool,
-    /// The share of the rounds in which it does.
+    /// The share of the rounds in which it is constant.
     pub(crate) share: f64,
     pub(crate) rounds: usize,
-    /// The stretch of the sender's readings over which it does, in microseconds.
+    /// The range of the sender's readings in those rounds, in microseconds.
     pub(crate) spread_us: f64,
 }
 
-/// Fewer rounds say nothing.
+/// Number of rounds below which nothing is concluded.
 const FEWEST: usize = 60;
-/// A sum stays in this share of the rounds and more, and in as many times more than with readings of other rounds.
+/// Least share of rounds in which a sum is constant, and least ratio to that with readings of other rounds.
 const STAYS: f64 = 0.3;
 const BY_CHANCE: f64 = 2.0;
-/// While the reading moves by as many half widths of what counts as the same.
+/// Least movement of the readings meanwhile, in half widths of the tolerance for equal sums.
 const MOVES: f64 = 8.0;
-/// Sensors in one loop, and rows that are looked at.
+/// Largest number of sensors in one loop, and of rows examined.
 const MOST_SENSORS: usize = 16;
 const MOST_ROWS: usize = 1 << 16;
 
-/// The most values within a stretch of this width, and where it begins.
+/// The largest number of values within an interval of this width, and where it begins.
 fn crowd(mut values: Vec<f64>, width: f64) -> (usize, f64) {
     values.sort_by(f64::total_cmp);
     let (mut from, mut most) = (0, (0, 0.0));
@@ -43,7 +43,7 @@ fn crowd(mut values: Vec<f64>, width: f64) -> (usize, f64) {
     most
 }
 
-/// Pairs of sensors of which one reads the other's sound, at most one for each two; `rows` are all readings in order.
+/// Pairs of sensors of which one reads the other's sound, at most one for each pair; `rows` are all readings in order.
 pub(crate) fn looped(rows: &[(usize, f64)], scatter: &[Scatter]) -> Vec<Looped> {
     let sensors = scatter.len();
     let rows = &rows[..rows.len().min(MOST_ROWS)];

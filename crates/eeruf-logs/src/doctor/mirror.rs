@@ -1,29 +1,29 @@
-//! Two sensors that read each other's sound: the path is the same both ways, so that their readings differ by twice
-//! the lag between their firings, however the robot moves.
+//! Two sensors that read each other's sound: the path is the same both ways, so their readings differ by twice the lag
+//! between their firings, however the robot moves.
 
 use super::series::Series;
 
-/// The agreement of two sensors.
+/// Agreement of two sensors' readings.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Mirrored {
     /// Firings in which both have an echo.
     pub(crate) both: u32,
-    /// Readings among them that are each other's.
+    /// Number of readings that agree with mutual crosstalk.
     pub(crate) agree: u32,
-    /// Readings that nearly are: a difference that only passes by is that three times as often, as the band is three
-    /// times as wide.
+    /// Number of readings that nearly agree: a difference that only passes by this value gives three times as many,
+    /// since the band is three times as wide.
     pub(crate) nearly: u32,
-    /// Readings that are far from it: two sensors that fire together before one wall would have none.
+    /// Number of readings far from agreement: two sensors that fire together at one wall would have none.
     pub(crate) far: u32,
     /// The range in microseconds of the readings that agree.
     pub(crate) spread_us: f64,
-    /// Echo times this close are the same, in microseconds.
+    /// Difference in microseconds below which echo times are equal.
     pub(crate) same_us: f64,
 }
 
 /// Least difference of echo times from different walls.
 const FAR_US: f64 = 1000.0;
-/// From here to there two echoes are nearly the same, in what counts as the same: the band is three times as wide.
+/// Limits of "nearly equal", in units of the tolerance: the band is three times as wide.
 const NEARLY: [f64; 2] = [1.5, 4.5];
 
 /// Compares two sensors that fire within half a period of each other.
@@ -60,7 +60,7 @@ pub(crate) fn mirrored(x: &Series, y: &Series, period_us: f64) -> Mirrored {
 }
 
 impl Mirrored {
-    /// Returns true if the two read each other's sound, and neither chance nor a wall before both explains it.
+    /// Returns true if the two read each other's sound, and neither chance nor a common wall explains it.
     pub(crate) fn is_mutual(&self) -> bool {
         self.agree >= 24
             && self.agree >= self.nearly

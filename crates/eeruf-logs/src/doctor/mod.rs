@@ -1,4 +1,4 @@
-//! A doctor for any log of ranges: is there crosstalk in it, and between which sensors?
+//! A doctor for logs of ranges that finds crosstalk and the sensors concerned.
 
 mod answer;
 mod loops;
@@ -17,13 +17,13 @@ use series::{Scatter, Series};
 use crate::symptom::Finding;
 use statistics::Dependence;
 
-/// Readings that are kept.
+/// Largest number of readings that are kept.
 const MOST_READINGS: usize = 1 << 18;
-/// Fewer readings of a sensor tell nothing.
+/// Number of a sensor's readings below which nothing is concluded.
 const FEWEST: u32 = 30;
-/// Readings depend on the lag if chance explains it in 3 of 100,000 sensors.
+/// Significance limit in standard deviations: chance exceeds it in 3 of 100,000 sensors.
 const DEVIATIONS: f64 = 4.0;
-/// Least share of readings for a verdict, beside their number.
+/// Least share of affected readings for a verdict, besides significance.
 const LEAST_SHARE: f64 = 0.05;
 
 /// The verdict of a log on crosstalk.
@@ -31,9 +31,9 @@ const LEAST_SHARE: f64 = 0.05;
 pub enum LogVerdict {
     /// Sensors read each other's sound.
     Crosstalk,
-    /// The log would show it, and does not.
+    /// No crosstalk is seen, and the log would show it.
     NoneSeen,
-    /// The log would not show it.
+    /// The log would not show crosstalk.
     #[default]
     CannotTell,
 }
@@ -75,7 +75,7 @@ pub struct Examination {
 pub struct Suspect {
     /// The sensor that may be fooled, from 0.
     pub sensor: usize,
-    /// The sensor whose sound it may read, if the log says that.
+    /// The sensor whose sound it may read, if known.
     pub by: Option<usize>,
     /// The evidence for it.
     pub reason: String,
@@ -102,18 +102,18 @@ pub struct Doctor {
     sensors: Vec<Series>,
     /// Each reading's sensor and echo time, in the order of the log.
     rows: Vec<(usize, f64)>,
-    /// The time of each, in microseconds.
+    /// The time of each reading, in microseconds.
     row_at_us: Vec<f64>,
     left_out: usize,
 }
 
 impl Doctor {
-    /// Begins with no readings; the speed of sound in m/s turns ranges into echo times.
+    /// A doctor without readings; the speed of sound in m/s converts ranges to echo times.
     pub fn new(speed_of_sound: f64) -> Self {
         Self { speed_of_sound, first_ns: None, sensors: vec![], rows: vec![], row_at_us: vec![], left_out: 0 }
     }
 
-    /// Takes a reading. The first 262,144 are kept.
+    /// Adds a reading. The first 262,144 are kept.
     pub fn push(&mut self, reading: &LogReading) {
         if self.rows.len() == MOST_READINGS {
             self.left_out += 1;
@@ -137,7 +137,7 @@ impl Doctor {
         series.echo_us.push(echo_us);
     }
 
-    /// Examines what was collected; `names` are those of the sensors.
+    /// Examines the readings; `names` are the sensors' names.
     pub fn examine(mut self, firing: &FiringPattern, names: &[String]) -> Examination {
         for series in &mut self.sensors {
             series.sort();
@@ -203,16 +203,17 @@ impl Doctor {
         found
     }
 
-    /// Rounds in which another sensor did not fire are a pause test. Returns the sensors that pass it with all others.
+    /// Rounds in which another sensor did not fire act as a pause test. Returns the sensors that pass it with all
+    /// others.
     fn silent_rounds<'n>(
         &self,
         scatter: &[Scatter],
         name: &impl Fn(usize) -> &'n str,
         found: &mut Examination,
     ) -> Vec<bool> {
-        /// More are no ring.
+        /// Number of sensors above which a log is not of a ring.
         const MOST_SENSORS: usize = 64;
-        /// Comparisons in which a share of `LEAST_SHARE` would show.
+        /// Number of comparisons in which a share of `LEAST_SHARE` would show.
         const MANY: u32 = 400;
         let sensors = self.sensors.len();
         if sensors > MOST_SENSORS {
@@ -270,7 +271,7 @@ impl Doctor {
         cleared
     }
 
-    /// Readings that a loop or others' sound explains, and nothing that stands or moves.
+    /// Finds readings explained by a loop or by others' sound but not by objects at rest or in motion.
     fn suspects<'n>(
         &self,
         scatter: &[Scatter],
@@ -278,7 +279,8 @@ impl Doctor {
         name: &impl Fn(usize) -> &'n str,
         found: &mut Examination,
     ) {
-        /// Readings that nothing explains: isolated ones, jumps, and those of a robot of which a sensor stands still.
+        /// Share of unexplained readings for a suspect: isolated ones, jumps, and those off a steady value while the
+        /// robot stands.
         const ISOLATED: f64 = 0.02;
         const JUMPS: f64 = 0.02;
         const STANDS: f64 = 0.5;
@@ -331,13 +333,13 @@ impl Doctor {
         }
     }
 
-    /// Returns true if the sensors have about as many readings each, as in the rounds of a loop.
+    /// Returns true if the sensors have about equally many readings, as in the rounds of a loop.
     fn has_rounds(&self) -> bool {
         let counts = || self.sensors.iter().map(|own| own.echo_us.len());
         counts().max().unwrap_or(0) <= counts().min().unwrap_or(0) + counts().max().unwrap_or(0) / 4
     }
 
-    /// Readings of two phases: an own echo is the same in both.
+    /// Examines readings with two phases, in which an own echo is the same in both.
     fn alternating<'n>(&self, name: &impl Fn(usize) -> &'n str) -> Examination {
         let mut found = Examination::default();
         let (mut few, mut unclear, mut blurred) = (0, 0, 0.0_f64);
@@ -396,7 +398,8 @@ impl Doctor {
         found
     }
 
-    /// Lags that stay: crosstalk repeats, and shows only where two sensors read each other's sound while they move.
+    /// Examines readings with constant lags: crosstalk repeats, and shows only if two sensors read each other's sound
+    /// while they move.
     fn constant<'n>(&self, firing: &FiringPattern, name: &impl Fn(usize) -> &'n str) -> Examination {
         let mut found = Examination::default();
         let period_us = firing.period_us.unwrap_or(0) as f64;
@@ -439,10 +442,10 @@ impl Doctor {
         found
     }
 
-    /// No sound of another sensor is left when a sensor listens.
+    /// Examines readings in turn, where no sound of another sensor is left when a sensor listens.
     fn in_turn(&self, firing: &FiringPattern) -> Examination {
-        /// Fewer rounds would not show seldom crosstalk; and of a robot that drives no jump of 30 cm may be left open,
-        /// in as large a share of all readings.
+        /// Number of rounds below which rare crosstalk would not show, and the largest share of unexplained jumps of 30
+        /// cm for a driving robot.
         const ROUNDS: usize = 100;
         const JUMPS: f64 = 0.0015;
         let gap_us = firing.gap_us.unwrap_or(0);
@@ -494,17 +497,17 @@ impl Doctor {
     }
 }
 
-/// A log that tells.
+/// Advice for recording a log that can tell.
 const CHANGE: &str =
     "1 minute in the same place with lags that change, as `eeruf design` plans them, or one sensor at a time";
-/// The test that tells another's sound from an own echo.
+/// The test that distinguishes another's sound from an own echo.
 fn pause(own: &str, other: &str) -> String {
     format!(
         "do not trigger {other} for 20 s, or hold a cloth before it: if {own} changes, it reads {other}; or wait 1 ms \
          more before {own} in every second round: another's sound comes 17 cm nearer then, an own echo stays"
     )
 }
-/// Sound in a room has died away after this time.
+/// Time after which sound in a room has died away.
 const QUIET_US: u64 = 30_000;
 
 #[cfg(test)]

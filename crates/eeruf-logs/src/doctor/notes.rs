@@ -1,12 +1,12 @@
-//! Symptoms of a single sensor, without the others.
+//! Symptoms of a single sensor, judged by itself.
 
 use super::series::{Series, Steady};
 use crate::symptom::Symptom;
 
-/// Fewer readings say nothing.
+/// Number of readings below which nothing is concluded.
 const FEWEST: usize = 30;
 
-/// Echoes that nothing changes, within what sound in still air scatters by.
+/// Returns true if the echoes never change by more than the scatter of sound in still air.
 fn never_changes(echoes: &[f64]) -> Option<String> {
     const MANY: usize = 15;
     const STILL_US: f64 = 3.0;
@@ -23,7 +23,7 @@ fn never_changes(echoes: &[f64]) -> Option<String> {
 }
 
 impl Series {
-    /// Puts the readings in order of time.
+    /// Sorts the readings by time.
     pub(crate) fn sort(&mut self) {
         let mut order: Vec<usize> = (0..self.at_us.len()).collect();
         order.sort_by(|&a, &b| self.at_us[a].total_cmp(&self.at_us[b]));
@@ -31,7 +31,7 @@ impl Series {
         self.echo_us = order.iter().map(|&k| self.echo_us[k]).collect();
     }
 
-    /// The most striking thing about the sensor's readings, if there is one.
+    /// The most striking symptom of the sensor's readings, if there is one.
     pub(crate) fn symptom(&self) -> Option<(Symptom, String)> {
         let count = self.echo_us.len();
         let echoes: Vec<f64> = self.echoes().collect();
@@ -55,7 +55,7 @@ impl Series {
             .or_else(|| self.faded().map(of(Symptom::Jumps)))
     }
 
-    /// Readings that are nearly never near the one before nor at a value that comes again.
+    /// Returns true if nearly all readings are far from the one before and from every recurring value.
     fn scattered(&self, echoes: &[f64]) -> Option<String> {
         let near = echoes.windows(2).filter(|two| (two[1] - two[0]).abs() < 500.0).count();
         let steady = self.steady().into_iter().filter(Steady::is_still);
@@ -66,7 +66,8 @@ impl Series {
         })
     }
 
-    /// Two steady values whose difference is the sensor's own period: the echo of the firing before.
+    /// Returns true for two steady values whose difference is the sensor's own period: the second is the echo of the
+    /// firing before.
     fn stale(&self) -> Option<String> {
         let mut periods: Vec<f64> = self.at_us.windows(2).map(|two| two[1] - two[0]).filter(|us| *us > 0.0).collect();
         periods.sort_by(f64::total_cmp);
@@ -96,7 +97,7 @@ impl Series {
         })
     }
 
-    /// Two steady values with at least a tenth of the readings each.
+    /// Returns true for two steady values, each with at least a tenth of the readings.
     fn faded(&self) -> Option<String> {
         if self.moves() {
             return None;

@@ -3,13 +3,13 @@
 use super::statistics::Changes;
 use crate::diagnose::median;
 
-/// Echoes this close to the next one, in microseconds, are of one steady value.
+/// Difference to the next echo, in microseconds, up to which echoes belong to one steady value.
 const NEXT_US: f64 = 100.0;
-/// Changes of an echo are alike from each of these to the next, in microseconds; smaller ones are none.
+/// Bounds of classes of changes of an echo, in microseconds; smaller changes are ignored.
 const CHANGES_US: [f64; 5] = [150.0, 500.0, 1500.0, 3000.0, 7000.0];
-/// An echo changes by at most this share of the time that passes: the robot drives at up to 3 m/s.
+/// Largest change of an echo relative to the time passed, for a robot at up to 3 m/s.
 const DRIVING: f64 = 0.018;
-/// A steady value that spans more moves.
+/// Width of a value above which it is moving.
 const STEADY_US: f64 = 600.0;
 
 /// Firing times of a sensor, and its echo times; both in microseconds, NaN without echo.
@@ -36,18 +36,18 @@ impl Scatter {
 /// Shares of a sensor's echoes that no motion explains.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Odd {
-    /// Far from the one before and the one after, at no value that comes again.
+    /// Share far from the readings before and after, at no recurring value.
     pub(crate) isolated: f64,
-    /// Far from the one before, if one of the two comes at no value that comes again.
+    /// Share far from the reading before, if one of the two has no recurring value.
     pub(crate) jumps: f64,
-    /// At no value that comes again.
+    /// Share at no recurring value.
     pub(crate) loose: f64,
-    /// At the value that most come at.
+    /// Share at the most frequent value.
     pub(crate) stands: f64,
     pub(crate) echoes: usize,
 }
 
-/// A steady value of a sensor that stands.
+/// A steady value of a sensor at rest.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Steady {
     pub(crate) from_us: f64,
@@ -66,7 +66,7 @@ impl Series {
         self.echo_us.iter().copied().filter(|us| !us.is_nan())
     }
 
-    /// The values between which the readings jump, each with at least 2 % of them, from the nearest on.
+    /// The values between which the readings jump, each with at least 2 % of them, the nearest first.
     pub(crate) fn steady(&self) -> Vec<Steady> {
         let mut sorted: Vec<f64> = self.echoes().collect();
         sorted.sort_by(f64::total_cmp);
@@ -81,7 +81,7 @@ impl Series {
         values
     }
 
-    /// Returns true if what the sensor sees comes nearer or goes away.
+    /// Returns true if the object before the sensor comes nearer or moves away.
     pub(crate) fn moves(&self) -> bool {
         let values = self.steady();
         let all: usize = values.iter().map(|value| value.count).sum();
@@ -90,7 +90,7 @@ impl Series {
         moving.map(|value| value.count).sum::<usize>() * 5 > count || all * 2 < count
     }
 
-    /// The step of which all values are multiples, if it is a coarse one.
+    /// The step of which all values are multiples, if it is coarse.
     pub(crate) fn step_us(&self) -> Option<f64> {
         let mut sorted: Vec<f64> = self.echoes().collect();
         sorted.sort_by(f64::total_cmp);
@@ -102,9 +102,9 @@ impl Series {
     }
 
     /// The scatter of the readings about a line through their neighbours or the next but one, at least half the step of
-    /// the values. Two sounds that alternate are no scatter.
+    /// the values. Two alternating sounds do not count as scatter.
     pub(crate) fn scatter(&self) -> Scatter {
-        /// A reading that is farther off, in microseconds, is of another sound.
+        /// Difference in microseconds above which a reading is of another sound.
         const OTHER_US: f64 = 1000.0;
         let about = |apart: usize| {
             let off = |five: &[f64]| (five[2] - 0.5 * (five[2 - apart] + five[2 + apart])).abs();
@@ -115,12 +115,13 @@ impl Series {
         Scatter { us: (1.48 / 1.5_f64.sqrt() * about(1).min(about(2))).max(0.5 * step_us), step_us }
     }
 
-    /// Readings that neither a thing that stands nor one that moves explains.
+    /// Readings that are explained neither by an object at rest nor by a moving one.
     pub(crate) fn odd(&self) -> Odd {
-        /// Readings within this many microseconds are of one thing that stands, if as large a share of all is.
+        /// Difference in microseconds within which readings are of one object at rest, and the share of readings that
+        /// it needs.
         const NEAR_US: f64 = 150.0;
         const RECURS: f64 = 0.03;
-        /// 15 cm, and what a robot at 1.2 m/s moves from one reading to the next.
+        /// Tolerance of a jump: 15 cm, plus the motion of a robot at 1.2 m/s between two readings.
         const OFF_US: f64 = 874.0;
         const DRIVES: f64 = 2.0 * 1.2 / 343.2;
         let echoes: Vec<f64> = self.echoes().collect();
@@ -148,8 +149,7 @@ impl Series {
         Odd { isolated, jumps, loose, stands: crowds.iter().copied().fold(0.0, f64::max), echoes: echoes.len() }
     }
 
-    /// The latest firing of another sensor at each of this one's, as the time before it in microseconds; NaN before
-    /// the first.
+    /// For each firing, the time since the latest firing of another sensor, in microseconds; NaN before the first.
     pub(crate) fn lags(&self, other: &Self) -> Vec<f64> {
         let mut next = 0;
         let lag = |&at: &f64| {
@@ -161,7 +161,7 @@ impl Series {
         self.at_us.iter().map(lag).collect()
     }
 
-    /// Parts the readings by two lags to another sensor: which of the two each has, and how far apart they are.
+    /// Splits the readings by two lags to another sensor: the class of each reading, and the difference of the lags.
     pub(crate) fn two_classes(&self, other: &Self) -> Option<(Vec<Option<bool>>, f64)> {
         let lags = self.lags(other);
         let mut sorted: Vec<f64> = lags.iter().copied().filter(|lag| !lag.is_nan()).collect();
@@ -185,10 +185,9 @@ impl Series {
         Some((lags.iter().map(|lag| (!lag.is_nan()).then_some(*lag > threshold)).collect(), gap))
     }
 
-    /// Pairs of a reading and the next one, of the other class: how much later the echo of the one class comes than
-    /// that of the other, or which of the two has none. Own echoes change as often one way as the other. What changes
-    /// at the same rate to the reading after next is driven, and no change.
-    /// Changes within four times the scatter are none.
+    /// Pairs of consecutive readings of different classes: the difference of their echoes, or which of the two has
+    /// none. Own echoes change equally often in both directions. Changes that continue at the same rate to the next
+    /// reading but one are motion and ignored, as are changes within four times the scatter.
     pub(crate) fn changes(&self, classes: &[Option<bool>], scatter: Scatter) -> Changes {
         let least_us = 4.0 * 2.0_f64.sqrt() * scatter.us;
         let mut changes = Changes::new(CHANGES_US.len() + 1);

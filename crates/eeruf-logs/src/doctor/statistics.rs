@@ -3,15 +3,15 @@
 /// Dependence of readings on the class of their firing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Dependence {
-    /// The share of the readings that does.
+    /// The share of readings that depends on the class.
     pub(crate) share: f64,
-    /// Standard deviations of a normal variable that is as unlikely by chance.
+    /// The chance probability, as standard deviations of a normal variable.
     pub(crate) deviations: f64,
     /// Number of comparisons.
     pub(crate) count: u32,
 }
 
-/// Counts of pairs of readings, one of each class: which of the two is greater, by size of the difference.
+/// Counts of pairs of readings, one of each class: which is greater, by size of the difference.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Changes {
     counts: Vec<[u32; 2]>,
@@ -23,7 +23,7 @@ impl Changes {
         Self { counts: vec![[0, 0]; sizes], pairs: 0 }
     }
 
-    /// Counts a pair: which of the two is greater, and the size of the difference, if they differ.
+    /// Counts a pair: which one is greater, and the size of the difference, if they differ.
     pub(crate) fn add(&mut self, difference: Option<(bool, usize)>) {
         self.pairs += 1;
         if let Some((greater, count)) =
@@ -33,8 +33,7 @@ impl Changes {
         }
     }
 
-    /// The test of Bowker, that each class is the greater one equally often. Sizes with fewer than 8 pairs are taken
-    /// together.
+    /// Bowker's test that each class is the greater one equally often. Sizes with fewer than 8 pairs are combined.
     pub(crate) fn dependence(&self) -> Dependence {
         let (mut cells, mut rest) = (vec![], [0.0, 0.0]);
         for [one, other] in self.counts.iter().map(|counts| counts.map(f64::from)) {
@@ -49,8 +48,8 @@ impl Changes {
     }
 }
 
-/// A chi-square statistic of this many degrees of freedom as standard deviations of a normal variable that is as
-/// unlikely to be exceeded, by the approximation of Wilson and Hilferty; 0 without freedom.
+/// A chi-square statistic with this many degrees of freedom, converted to standard deviations of a normal variable by
+/// the approximation of Wilson and Hilferty; 0 without freedom.
 pub(crate) fn chi_square_deviations(statistic: f64, freedom: usize) -> f64 {
     if freedom == 0 {
         return 0.0;

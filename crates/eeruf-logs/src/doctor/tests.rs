@@ -1,6 +1,6 @@
 use super::*;
 
-/// Readings of sensors that fire at these times, in microseconds, and read this, 300 times each.
+/// Examines sensors that fire at these times, in microseconds, and have these readings, 300 times each.
 fn examine(sensors: usize, pattern: Pattern, reads: impl Fn(u64, usize) -> (u64, Option<f64>)) -> Examination {
     let mut doctor = Doctor::new(343.2);
     (0..300).for_each(|round| (0..sensors).for_each(|sensor| push(&mut doctor, sensor, reads(round, sensor))));

@@ -1,10 +1,10 @@
-//! Lines that a board or a monitor writes by itself: start messages, resets, crashes, and noise at another baud rate.
+//! Lines that a board or a monitor writes by itself: boot messages, resets, crashes, and noise from another baud rate.
 
-/// Beginnings of the first lines of a start or a crash, and of the last. What is between them is neither.
+/// Prefixes of the first and of the last lines of a boot message or a crash; lines in between are skipped too.
 const BEGINS: &str =
     "ets J|ESP-ROM:|rst:0x|Guru Meditation Error: |Exception (|Fatal exception|abort() was called|>>>stack";
 const ENDS: &str = "entry 0x|~ld|Rebooting...|<<<stack";
-/// Beginnings of lines that stand alone, of boards, sensors and monitors.
+/// Prefixes of single lines from boards, sensors and monitors.
 const ALONE: &str = "\
     Build:|SPIWP:0x|load:0x|entry 0x|Octal Flash Mode|For OPI Flash|flash read err|Brownout detector|Soft WDT reset|\
     *** Booting |main(): This is RIOT!|MPY: soft reboot|Auto-reload is on. |code.py output:|Code stopped by |\
@@ -13,14 +13,14 @@ const ALONE: &str = "\
 const TAGS: &str = "\
     boot qio_mode esp_image cpu_start app_start app_init efuse_init heap_init spi_flash sleep main_task gpio uart \
     coexist coex pp net80211 wifi wifi_init phy_init system_api esp_netif_handlers task_wdt octal_psram esp_psram";
-/// A start or a crash has at most as many lines.
+/// Largest number of lines of a boot message or a crash.
 const LONGEST: u32 = 60;
 
-/// Tells lines of a board from others.
+/// A recogniser of a board's lines.
 pub(super) struct Boot {
-    /// `BEGINS`, `ENDS` and `ALONE`, apart: each line is compared with all of them.
+    /// The words of `BEGINS`, `ENDS` and `ALONE`, since each line is compared with all of them.
     lists: [Vec<&'static str>; 3],
-    /// Lines that may still follow of a start or a crash.
+    /// Number of lines that may still follow in a boot message or a crash.
     left: u32,
 }
 
@@ -61,7 +61,7 @@ fn is_of_esp_idf(text: &str) -> bool {
     said.is_some_and(|(tag, _)| TAGS.split(' ').any(|own| tag == own || tag.starts_with("boot.esp32")))
 }
 
-/// Returns true for a line that is half no text, as what was sent at another baud rate.
+/// Returns true for a line of which half is not text, such as one from another baud rate.
 pub(super) fn is_noise(line: &str) -> bool {
     let is_odd = |letter: &char| *letter == '\u{fffd}' || (letter.is_control() && *letter != '\t');
     let odd = line.chars().filter(is_odd).count();

@@ -1,4 +1,4 @@
-//! The columns that say when a row was and whose it is.
+//! The columns with a row's time and its sensor.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -12,7 +12,7 @@ use super::column::{Column, Role};
 use super::plan::{Plan, guess};
 
 impl Plan {
-    /// Chooses one time, or two columns that are one: seconds and nanoseconds, a date and a time of day.
+    /// Chooses one time column, or two that form one: seconds and nanoseconds, a date and a time of day.
     pub(super) fn time_columns(&mut self, asked: Option<usize>) {
         let times: Vec<_> = (0..self.columns.len()).filter(|&index| self.columns[index].role == Role::Time).collect();
         let is_time = |index: &usize| !self.columns[*index].numbers.is_empty() || self.columns[*index].calendars > 0;
@@ -60,7 +60,7 @@ impl Plan {
         self.time = chosen.into_iter().map(|index| (index, TimeUnit::S)).collect();
     }
 
-    /// The column whose texts tell apart rows of one time, as the tags of series do.
+    /// The column whose texts distinguish rows with the same time, like the tags of series.
     fn tag(&self, lines: &[(u64, &str)]) -> Option<usize> {
         let &(time, _) = self.time.first()?;
         let rows = self.split(lines);

@@ -1,4 +1,4 @@
-//! A column of a text, and what its first values are.
+//! A column of a text, and the properties of its first values.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use crate::value::{self, Value};
 
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub(super) enum Role {
-    /// A sensor's ranges.
+    /// The ranges of a sensor.
     Range,
     Time,
     Sensor,
@@ -17,7 +17,7 @@ pub(super) enum Role {
     Most,
     #[default]
     Other,
-    /// Without a value so far.
+    /// A column without values so far.
     Empty,
 }
 
@@ -26,7 +26,7 @@ pub(super) enum Role {
 pub(super) struct Column {
     pub(super) name: String,
     pub(super) role: Role,
-    /// Each value in the first lines is a number.
+    /// True if each value in the first lines is a number.
     pub(super) is_numeric: bool,
     pub(super) unit: RangeUnit,
     /// The longest value so far.
@@ -38,15 +38,15 @@ pub(super) struct Column {
     pub(super) texts: usize,
     pub(super) calendars: usize,
     pub(super) distinct: BTreeMap<String, usize>,
-    /// Rows whose text is not that of the row before.
+    /// Number of rows whose text differs from that of the row before.
     changes: usize,
     last: String,
     pub(super) has_unit_in_cells: Option<RangeUnit>,
     pub(super) units: usize,
-    /// The unit below its name is one of lengths, or another one.
+    /// True if the unit below its name is a unit of length, false for another unit.
     pub(super) has_length: bool,
     pub(super) has_other_unit: bool,
-    /// A unit in which every second cell says the range of the one before it again.
+    /// A unit in which every second cell repeats the range of the cell before.
     pub(super) repeated_unit: Option<RangeUnit>,
 }
 
@@ -95,7 +95,7 @@ impl Column {
         sorted.get(sorted.len() / 2).copied().unwrap_or(f64::NAN)
     }
 
-    /// Returns true for numbers that rise, or stay, and are seconds, milli-, micro- or nanoseconds since 1970.
+    /// Returns true for numbers that never fall and are seconds, milli-, micro- or nanoseconds since 1970.
     pub(super) fn is_epoch(&self) -> bool {
         let is_in = |number: &f64| [1.0, 1e3, 1e6, 1e9].iter().any(|unit| (1e9..2.2e9).contains(&(number / unit)));
         let falls = self.numbers.windows(2).filter(|two| two[1] < two[0]).count();
@@ -104,7 +104,7 @@ impl Column {
         count > 0 && count * 10 >= 9 * self.numbers.len() && falls * 10 <= self.numbers.len()
     }
 
-    /// Returns true for whole numbers that count from the first sensor to the last again and again.
+    /// Returns true for whole numbers that repeatedly count through the sensors.
     pub(super) fn is_cycle(&self) -> bool {
         let of = |pick: fn(f64, f64) -> f64| self.numbers.iter().copied().reduce(pick).unwrap_or(0.0);
         let (least, most, rows) = (of(f64::min), of(f64::max), self.numbers.len());
@@ -118,7 +118,7 @@ impl Column {
             && next * 10 >= (rows - 1) * 9
     }
 
-    /// Returns true for texts that may name a sensor: no pair, no time, and not each of them once.
+    /// Returns true for texts that may name a sensor: not pairs, not times, and some of them repeated.
     pub(super) fn is_label(&self) -> bool {
         let rows: usize = self.distinct.values().sum();
         let is_name = |text: &String| {
@@ -135,13 +135,13 @@ impl Column {
         is_name && !is_state && (self.distinct.len() < rows || rows < 3)
     }
 
-    /// Returns true for texts that come equally often, as sensors in turn do, and what a robot does does not.
+    /// Returns true for texts that occur equally often, like sensors in turn and unlike a robot's actions.
     pub(super) fn takes_turns(&self) -> bool {
         let counts = || self.distinct.values().copied();
         self.distinct.len() > 1 && counts().max() <= counts().min().map(|least| least + 1 + least / 4)
     }
 
-    /// For two hexadecimal digits in each cell, as tools for buses print bytes: true if some are no plain number.
+    /// For cells of two hexadecimal digits, as bus tools print bytes: true if some are not decimal numbers.
     pub(super) fn bytes(&self) -> Option<bool> {
         let is_byte = |text: &String| text.len() == 2 && text.bytes().all(|byte| byte.is_ascii_hexdigit());
         let is_odd = |text: &String| text.starts_with('0') || text.bytes().any(|byte| byte.is_ascii_alphabetic());
@@ -149,7 +149,7 @@ impl Column {
         is_all.then(|| self.distinct.keys().any(is_odd))
     }
 
-    /// Returns true if numbers of the column have a unit, so that one without it is cut.
+    /// Returns true if the column's numbers have units, so that a number without one is cut.
     pub(super) fn needs_unit(&self) -> bool {
         self.units * 10 >= self.numbers.len() * 8 && self.units > 0
     }
@@ -162,13 +162,13 @@ impl Column {
         rows >= 3 && others * 10 <= rows && (rows - 1 - rises) * 20 < rows.max(20)
     }
 
-    /// Returns true if half of the steps go down, as no clock does, however often it restarts.
+    /// Returns true if half of the steps go down, which a clock never does, even if it restarts often.
     pub(super) fn falls_often(&self) -> bool {
         let falls = self.numbers.windows(2).filter(|two| two[1] < two[0]).count();
         falls * 2 >= self.numbers.len() && falls > 0
     }
 
-    /// Returns true for a column that rises from its first value to the second as it does then: times from 0 on.
+    /// Returns true for a column whose first value equals its usual step: times from 0 on.
     pub(super) fn begins_evenly(&self) -> bool {
         let steps = self.steps();
         let (Some(median), [first, second, ..]) = (steps.get(steps.len() / 2), &self.numbers[..]) else { return false };

@@ -1,4 +1,4 @@
-//! The log of `ESPHome`: each measurement once, from the line of the sensor that made it, or from its state.
+//! The log of `ESPHome`: each measurement once, from the sensor's own line or from its state.
 //!
 //! ```text
 //! [14:49:46][D][ultrasonic.sensor:040]: 'Front' - Got distance: 1.52 m
@@ -13,9 +13,9 @@ use crate::value;
 
 #[derive(Default)]
 pub(super) struct EspHome {
-    /// Sensors whose measurements the log has; their states repeat them.
+    /// Sensors whose measurements are in the log, so that their states are repetitions.
     measured: HashSet<String>,
-    /// A timeout, in a version that does not name the sensor; its state follows.
+    /// True after a timeout in a version that does not name the sensor; its state follows.
     has_timed_out: bool,
 }
 
@@ -31,7 +31,7 @@ impl EspHome {
         start.lines().any(is_of_sensor)
     }
 
-    /// A pair of name and range after the line's time; nothing for a line with a reading that another line has.
+    /// A pair of name and range after the line's time; nothing for a line that repeats another line's reading.
     pub(super) fn rewrite(&mut self, line: &str) -> Rewritten {
         use Rewritten::{Lines, Misfit, Nothing};
         let may_be_cut =

@@ -1,27 +1,26 @@
-//! Rows that hold many measurements, each as a group of columns: `Tms1;Lus1;Rus1;Tms2;..`, as bicycle sensors
-//! write them.
+//! Rows with many measurements, each a group of columns: `Tms1;Lus1;Rus1;Tms2;..`, as bicycle sensors write them.
 
 use super::lines::Rewritten;
 use super::shape::{Separator, separated};
 use crate::names::{self, Meaning};
 use crate::value;
 
-/// Fewer groups are sensors by their numbers.
+/// Number of groups below which the numbers are sensors.
 const FEWEST: usize = 3;
 
-/// The columns of a group, again and again.
+/// The columns of a repeated group.
 pub(super) struct Groups {
     separator: Separator,
     /// The column at which the first group begins.
     begin: usize,
-    /// The names in a group without their numbers.
+    /// The names in a group, without their numbers.
     names: Vec<String>,
     groups: usize,
-    /// The column with the time of the row, in milliseconds, which those of the groups are added to.
+    /// The column with the time of the row in milliseconds, to which the times of the groups are added.
     time: Option<usize>,
     header: String,
     has_begun: bool,
-    /// Larger numbers are no echo, as a line before the header says.
+    /// Largest number that is an echo, from a line before the header.
     most: Option<f64>,
 }
 
@@ -37,7 +36,7 @@ fn is_time(name: &str) -> bool {
     rest.is_empty() || ["ms", "us", "s"].contains(&rest) || names::meaning(name) == Meaning::Time
 }
 
-/// A name with its unit as a word of its own: `L_us` for `Lus`.
+/// A name with its unit as a separate word: `L_us` for `Lus`.
 fn parted(name: &str) -> String {
     let unit = ["us", "cm", "mm"].into_iter().find_map(|unit| Some((name.strip_suffix(unit)?, unit)));
     match unit.filter(|(stem, _)| stem.ends_with(|letter: char| letter.is_uppercase())) {
@@ -47,7 +46,7 @@ fn parted(name: &str) -> String {
 }
 
 impl Groups {
-    /// By the first lines.
+    /// Groups from the first lines.
     pub(super) fn of(lines: &[&str]) -> Option<Self> {
         let found = |line: &&str| {
             let separators = [Separator::Semicolon, Separator::Comma, Separator::Tab];

@@ -69,8 +69,8 @@ impl Plan {
         }
     }
 
-    /// Takes back what nothing but numbers calls ranges, where the unit that they would have puts nine of ten nearer
-    /// than any module hears: a countdown, a share, a state.
+    /// Rejects columns that only their numbers suggest as ranges, if nine of ten values would be nearer than any module
+    /// hears: a countdown, a share, a state.
     fn refute(&mut self, values: &[(f64, bool)], unit: RangeUnit, unnamed: &[usize], options: &Options) {
         const NEAREST_M: f64 = 0.04;
         let is_asked = !options.table.ranges.is_empty() || !options.table.columns.is_empty();
@@ -98,7 +98,7 @@ impl Plan {
         }
     }
 
-    /// Warns of a unit in which most ranges are nearer than ultrasonic sensors begin to hear, or farther than they do.
+    /// Warns about a unit with which most ranges are nearer or farther than ultrasonic sensors hear.
     fn doubt(&mut self, unit: RangeUnit, options: &Options) {
         const PLAUSIBLE_M: std::ops::RangeInclusive<f64> = 0.01..=25.0;
         let ranges = self.columns.iter().filter(|column| column.role == Role::Range);
@@ -120,7 +120,7 @@ impl Plan {
     }
 
     pub(super) fn no_echoes(&mut self, options: &Options) {
-        /// Numbers that sensors and libraries send where they hear nothing.
+        /// Numbers that sensors and libraries send if they hear nothing.
         const CEILINGS: [f64; 15] = [
             127.0, 255.0, 300.0, 400.0, 450.0, 500.0, 600.0, 765.0, 999.0, 1000.0, 1023.0, 4000.0, 5000.0, 8190.0,
             65535.0,
@@ -195,7 +195,7 @@ impl Plan {
     }
 }
 
-/// The unit of ranges by their magnitude; sorts them.
+/// The unit of ranges by their magnitude; sorts the ranges.
 fn by_magnitude(values: &mut [(f64, bool)]) -> RangeUnit {
     /// Values that sensors and libraries send in place of a range.
     const PLACEHOLDERS: [f64; 8] = [999.0, 9999.0, 8190.0, 8191.0, 32767.0, 65533.0, 65534.0, 65535.0];

@@ -1,4 +1,4 @@
-//! Lines of a text, whatever ends them, and the objects of a JSON document.
+//! Lines of a text with any line ending, and the objects of a JSON document.
 
 use std::borrow::Cow;
 use std::collections::VecDeque;
@@ -7,21 +7,21 @@ use std::io::{self, BufRead, BufReader, Read};
 /// The bytes of a text.
 pub(super) type Input<'a> = BufReader<Box<dyn Read + 'a>>;
 
-/// A longer line is lost.
+/// Length above which a line is dropped.
 const LONGEST_LINE: usize = 1 << 16;
-/// A longer object is lost.
+/// Length above which an object is dropped.
 const LONGEST_OBJECT: usize = 1 << 20;
 
 /// A line or an object.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Line {
-    /// From 1.
+    /// The line's number, from 1.
     pub(crate) number: u64,
     pub(crate) text: String,
-    /// Returns false for a last line that nothing ends, which may be cut.
+    /// False for a last line without a line break, which may be cut.
     pub(crate) is_ended: bool,
     pub(crate) is_too_long: bool,
-    /// A reading may stand in it, but not in the form of the log.
+    /// True if the line may hold a reading but does not have the form of the log.
     pub(crate) is_misfit: bool,
 }
 
@@ -35,7 +35,7 @@ pub(super) enum Rewritten {
     Misfit,
 }
 
-/// A text without a terminal's sequences for colours and places: `ESC [`, numbers, a letter.
+/// A text without a terminal's escape sequences: `ESC [`, numbers, a letter.
 fn without_colours(text: &str) -> Cow<'_, str> {
     if !text.contains("\u{1b}[") {
         return Cow::Borrowed(text);
@@ -52,12 +52,12 @@ fn without_colours(text: &str) -> Cow<'_, str> {
     Cow::Owned(plain)
 }
 
-/// Lines that end by `\n`, `\r\n` or `\r`.
+/// Lines that end with `\n`, `\r\n` or `\r`.
 pub(crate) struct Lines<'a> {
     pub(super) input: Input<'a>,
     number: u64,
     pending: VecDeque<Line>,
-    /// Each line begins with `#`, which begins no comment then.
+    /// True if each line begins with `#`, which then does not begin a comment.
     pub(super) has_hashes: bool,
 }
 
@@ -119,8 +119,7 @@ impl<'a> Lines<'a> {
     }
 }
 
-/// The objects of a JSON document: elements of its arrays, or objects one after the other. Arrays within an array are
-/// such elements too.
+/// The objects of a JSON document: elements of its arrays, or consecutive objects. Nested arrays are such elements too.
 pub(crate) struct Objects<'a> {
     input: Input<'a>,
     number: u64,
@@ -187,7 +186,7 @@ impl<'a> Objects<'a> {
         }
     }
 
-    /// Returns true if a number follows, so that the array holds values and no records.
+    /// Returns true if a number follows, so that the array holds values instead of records.
     fn is_inner(&mut self) -> io::Result<bool> {
         let next = self.input.fill_buf()?.iter().find(|byte| !byte.is_ascii_whitespace());
         Ok(next.is_some_and(|byte| byte.is_ascii_digit() || b"-\"n".contains(byte)))

@@ -1,5 +1,5 @@
-//! Messages as `ros2 topic echo` and `rostopic echo` print them: maps by indentation, each ended by a line of `---`;
-//! and blocks of `name: value`, each ended by a blank line or begun by `###`.
+//! Messages as `ros2 topic echo` and `rostopic echo` print them: maps by indentation, each ended by a line `---`; and
+//! blocks of `name: value`, each ended by a blank line or begun by `###`.
 
 use std::collections::BTreeSet;
 use std::io;
@@ -9,10 +9,10 @@ use serde_json::Value as Json;
 use super::lines::{Line, Lines};
 use crate::value;
 
-/// A message with more text is lost.
+/// Length of text above which a message is dropped.
 const LONGEST: usize = 1 << 20;
 
-/// The end of each message.
+/// The mark that ends a message.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum End {
     Rule,
@@ -20,8 +20,8 @@ pub(super) enum End {
 }
 
 impl End {
-    /// By the beginning of a text: keys and elements of lists alone, up to a line that ends them; or blocks with the
-    /// same keys, two and more in each.
+    /// The mark at the beginning of a text: after keys and elements of lists a line that ends them, or blocks with the
+    /// same two or more keys.
     pub(super) fn of(start: &str) -> Option<Self> {
         let is_plain = |key: &str| key.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
         let is_key = |line: &&str| entry(line).is_some_and(|(key, _)| line.starts_with(key) && is_plain(key));
@@ -48,13 +48,13 @@ impl End {
     }
 }
 
-/// Returns true for a key that ends with a number of its own: a sensor's, and no field of a message.
+/// Returns true for a key that ends with its own number, as a sensor's does and a field's does not.
 fn is_numbered(line: &str) -> bool {
     entry(line).is_some_and(|(key, _)| key.contains(' '))
 }
 
-/// The next message, as a JSON object of its values by their paths. One that is damaged, or that nothing ends and that
-/// may be cut, stays text, which is no object.
+/// The next message, as a JSON object of its values by their paths. A message that is damaged, or that has no end and
+/// may be cut, remains text.
 pub(super) fn next(lines: &mut Lines<'_>, end: End) -> io::Result<Option<Line>> {
     let (mut message, mut first, mut bytes, mut is_ended) = (vec![], 0, 0, false);
     while let Some(line) = lines.next()? {
@@ -83,7 +83,7 @@ pub(super) fn next(lines: &mut Lines<'_>, end: End) -> io::Result<Option<Line>> 
     Ok(Some(Line { number: first, text, is_ended, is_too_long: bytes > LONGEST, is_misfit: false }))
 }
 
-/// A key and what follows it on the line, of `key: value` or `key:`.
+/// The key and the rest of a line `key: value` or `key:`.
 fn entry(line: &str) -> Option<(&str, &str)> {
     let (key, value) = line.trim().split_once(':')?;
     let is_key = key.starts_with(|letter: char| letter.is_ascii_alphabetic() || letter == '_')
@@ -91,13 +91,13 @@ fn entry(line: &str) -> Option<(&str, &str)> {
     (is_key && (value.is_empty() || value.starts_with(' '))).then_some((key, value.trim()))
 }
 
-/// Returns true for a line that a message may have.
+/// Returns true for a line that can be part of a message.
 fn is_part(line: &str) -> bool {
     entry(line).is_some() || line.trim_start().starts_with("- ")
 }
 
-/// The values of a message; nothing for one with a line that has no key, or with a key that comes twice, as where the
-/// line between two messages is lost.
+/// The values of a message; `None` if a line has no key or a key occurs twice, as when the line between two messages is
+/// lost.
 fn object(message: &[String]) -> Option<Vec<(String, Json)>> {
     let mut values = vec![];
     let mut paths = BTreeSet::new();

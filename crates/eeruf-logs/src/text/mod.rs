@@ -1,7 +1,7 @@
 //! Reads readings from text of every shape: tables, lines of pairs, JSON, with or without header, whole or damaged.
 //!
-//! A line that is damaged gives no reading: one with a cell that is neither a number nor a word for no echo, with more
-//! or fewer cells than the others, or one that ends without a line break and is shorter than it may be.
+//! A damaged line yields no reading: a line with a cell that is neither a number nor a word for no echo, with more or
+//! fewer cells than the others, or a last line without a line break that is too short.
 
 mod boot;
 mod chosen;
@@ -35,10 +35,10 @@ pub(crate) use {
     shape::{Separator, separated},
 };
 
-/// As many lines, and as many bytes, are looked at before the first reading.
+/// Number of lines, and of bytes, that are examined before the first reading.
 const SAMPLE: (usize, usize) = (1000, 1 << 18);
 
-/// Reads a text; `file` stands in errors.
+/// Reads a text; `file` is used in errors.
 pub(crate) fn read(input: impl Read, file: &Path, options: &Options, sink: &mut Sink<'_>) -> Result<(), FileError> {
     let failed = |error: std::io::Error| FileError::reading(file, &error);
     let mut source = Source::new(Box::new(input)).map_err(failed)?;

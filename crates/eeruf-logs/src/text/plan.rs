@@ -1,4 +1,4 @@
-//! The reading of a text: its shape, its columns with their roles, and what was guessed.
+//! The plan for reading a text: its shape, its columns with their roles, and the guesses.
 
 use std::collections::{BTreeSet, HashMap};
 
@@ -7,10 +7,10 @@ use super::shape::Shape;
 use crate::options::TimeUnit;
 use crate::sink::{Guess, Skipped};
 
-/// The sensors of one log.
+/// Largest number of sensors in one log.
 pub(super) const MOST_SENSORS: usize = 4096;
 
-/// Numbers that mean that there was no echo.
+/// Numbers that mean no echo.
 #[derive(Clone, Debug, Default)]
 pub(super) struct NoEcho {
     pub(super) zero: bool,
@@ -22,17 +22,17 @@ pub(super) struct NoEcho {
 /// The meaning of a column of validity.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Says {
-    /// The status of ArduPilot's `RFND`: 4 is good, 3 beyond the range, 2 below it, less is no measurement.
+    /// The status of ArduPilot's `RFND`: 4 is good, 3 beyond the range, 2 below it, less means no measurement.
     RangefinderStatus,
-    /// `DroneCAN`'s: 1 is good, 2 too close, 3 too far, 0 unknown.
+    /// The reading type of `DroneCAN`: 1 is good, 2 too close, 3 too far, 0 unknown.
     ReadingType,
-    /// 1 or `true` is good.
+    /// A flag: 1 or `true` is good.
     Flag,
-    /// 0 is bad; below 0 nothing is known.
+    /// A quality: 0 is bad, below 0 unknown.
     Quality,
 }
 
-/// A column of validity, and the one range that it is about, or all of its row.
+/// A column of validity, and the range to which it applies, or all of its row.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Validity {
     pub(super) column: usize,
@@ -48,35 +48,35 @@ pub(super) struct Plan {
     pub(super) columns: Vec<Column>,
     pub(super) by_name: HashMap<String, usize>,
     pub(super) header: Option<Vec<String>>,
-    /// A header, a comment or the form of the rows names the columns.
+    /// True if a header, a comment or the form of the rows names the columns.
     pub(super) has_names: bool,
-    /// Lines before this one are no rows.
+    /// Number of the first line that can be a row.
     pub(super) rows_from: u64,
     pub(super) time: Vec<(usize, TimeUnit)>,
     pub(super) sensor: Option<usize>,
-    /// Sensors that a column names, as often as is needed to trust them.
+    /// Sensors that a column names often enough to be trusted.
     pub(super) known: BTreeSet<String>,
-    /// Labels of rows whose names are of another quantity, beside one that is called a range.
+    /// Labels of rows with another quantity, besides one that is called a range.
     pub(super) foreign: BTreeSet<String>,
     pub(super) no_echo: NoEcho,
-    /// Each row is of one sensor: the empty cells of the others are no silence.
+    /// True if each row has one sensor, so that empty cells of the others are not silence.
     pub(super) one_a_row: bool,
     pub(super) is_first_cut: bool,
-    /// The column that says the unit of its row's range.
+    /// The column with the unit of its row's range.
     pub(super) unit: Option<usize>,
-    /// The column that says by what a row's sensor measures, and the number of ultrasound.
+    /// The column with the medium of a row's sensor, and the number that means ultrasound.
     pub(super) medium: Option<(usize, f64)>,
-    /// Columns that say whether ranges are any.
+    /// Columns that say if ranges are valid.
     pub(super) validity: Vec<Validity>,
-    /// Lines before the header, which a reset repeats.
+    /// Lines before the header, which are repeated after a reset.
     pub(super) greetings: BTreeSet<String>,
-    /// Lines of dashes part rows or messages; else they are words for no echo.
+    /// True if lines of dashes separate rows or messages; otherwise they are words for no echo.
     pub(super) has_rules: bool,
-    /// The names that nearly each line of pairs has.
+    /// The names in nearly all lines of pairs.
     pub(super) usual_names: Option<Vec<String>>,
     pub(super) form: String,
     pub(super) guesses: Vec<Guess>,
-    /// A warning of ranges that no ultrasonic sensor has.
+    /// A warning about ranges that no ultrasonic sensor has.
     pub(super) implausible: Option<String>,
     pub(super) skipped: Vec<Skipped>,
 }

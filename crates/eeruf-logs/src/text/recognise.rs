@@ -15,7 +15,7 @@ use super::shape::{self, Separator, Shape, is_underline};
 use crate::names::{self, Meaning};
 use crate::value;
 
-/// Recognises a log by its first lines.
+/// Recognises a log from its first lines.
 pub(super) fn recognise(
     file: &Path,
     sample: &[Line],
@@ -51,7 +51,7 @@ pub(super) fn recognise(
     Ok(plan)
 }
 
-/// Columns that `ros2 topic echo --csv` prints of a Range, whose last came with Iron.
+/// Columns that `ros2 topic echo --csv` prints for a Range; the last one exists since Iron.
 const ECHOED_RANGE: [&str; 9] = [
     "header.stamp.sec",
     "header.stamp.nanosec",
@@ -78,7 +78,7 @@ fn is_echoed_range(rows: &[(u64, Vec<String>)], width: usize) -> bool {
 }
 
 impl Plan {
-    /// Finds header, names and rows of a table; the answer is the units of a row of units.
+    /// Finds header, names and rows of a table; returns the units of a row of units.
     fn table(
         &mut self,
         file: &Path,
@@ -464,7 +464,7 @@ impl Plan {
         Ok(())
     }
 
-    /// Returns true if a name or a unit says that a column is one of ranges.
+    /// Returns true if a name or a unit marks a column as a range.
     pub(super) fn is_called(column: &Column) -> bool {
         let by_unit = names::range_unit(&column.name).is_some_and(|(unit, is_sure)| is_sure || unit != RangeUnit::Us);
         // Microseconds may be of anything.
@@ -475,7 +475,7 @@ impl Plan {
         column.has_length || by_unit || by_cells || by_name || is_ultrasound
     }
 
-    /// Refuses a log in which what is called a range holds digits and no numbers, or which is one record.
+    /// Refuses a log whose range columns hold digits but no numbers, or which is one record.
     fn refuse_unreadable(&self, file: &Path, lines: &[(u64, &str)]) -> Result<(), FileError> {
         let has_digit = |text: &&String| text.contains(|letter: char| letter.is_ascii_digit());
         let is_odd = |column: &&Column| {
@@ -514,7 +514,7 @@ impl Plan {
         Ok(())
     }
 
-    /// Where names or units say which columns are ranges, one of which neither says anything is none.
+    /// Removes columns that neither a name nor a unit marks as ranges, if others are marked.
     fn named_ranges_alone(&mut self) {
         // Letters are places where two and more are.
         let is_letter = |column: &Column| column.role == Role::Range && names::is_letter_of_place(&column.name);
@@ -528,8 +528,8 @@ impl Plan {
         }
     }
 
-    /// Columns of which no name and no unit says what they are form a ring only if these say nothing else either:
-    /// numbers, letters of places. What changes and is always beyond what modules hear, beside ranges, is none.
+    /// Keeps unmarked columns as a ring only if their names say nothing else: numbers, letters of places. A column that
+    /// changes and is always beyond what modules hear, beside ranges, is removed.
     fn one_kind(&mut self) {
         const FARTHEST_M: f64 = 8.0;
         let of: Vec<_> = (0..self.columns.len()).filter(|&index| self.columns[index].role == Role::Range).collect();
@@ -568,7 +568,7 @@ impl Plan {
         self.columns.iter().filter(|column| column.role == Role::Sensor && column.distinct.len() > 1).count()
     }
 
-    /// A depth or a level beside a column that is called a range is worked out from it.
+    /// Removes a depth or a level beside a column that is called a range, since it is computed from it.
     fn without_derived(&mut self) {
         let is_called = |column: &Column| {
             column.role == Role::Range
@@ -581,7 +581,7 @@ impl Plan {
         }
     }
 
-    /// Returns true if nearly each row of a table has one range and empty cells for the other sensors.
+    /// Returns true if nearly every row of a table has one range, and empty cells for the other sensors.
     fn is_one_a_row(&self, lines: &[(u64, &str)]) -> bool {
         let Shape::Separated(separator) = self.shape else { return false };
         let is_of_sensor = |column: &Column| matches!(column.role, Role::Range | Role::Empty);
@@ -599,13 +599,13 @@ impl Plan {
         of_any >= 8 && of_one * 20 >= of_any * 19
     }
 
-    /// A column that counts rows.
+    /// Returns true for a column that counts rows.
     fn is_counter(&self, index: usize) -> bool {
         let column = &self.columns[index];
         column.is_rising() && column.steps().iter().all(|&step| (step - 1.0).abs() < 1e-9) && column.numbers[0] < 2.0
     }
 
-    /// The first of several columns without names whose values go on by one step: an angle, a loop's number.
+    /// The first of several unnamed columns whose values increase by one step: an angle, a loop's number.
     fn is_sweep(&self, index: usize) -> bool {
         let is_named = self.has_names || !matches!(self.shape, Shape::Separated(_));
         let ([], [column, _, ..]) = self.columns.split_at(index) else { return false };
@@ -614,7 +614,7 @@ impl Plan {
         !is_named && column.units == 0 && is_even && (steps.len() >= 5 || steps.len() >= 2 && steps[0] >= 5.0)
     }
 
-    /// The first numbers without a name that rise evenly, to numbers that no range has, are times.
+    /// Returns true if the first unnamed numbers increase evenly to values that no range has: they are times.
     fn is_clock(&self, index: usize) -> bool {
         let (before, [column, others @ ..]) = self.columns.split_at(index) else { return false };
         let is_first = before.iter().all(|other| other.numbers.is_empty());

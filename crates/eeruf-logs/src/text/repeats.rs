@@ -1,4 +1,4 @@
-//! Columns that repeat a range: the same in another unit, what a filter made of it, or the voltage that it came from.
+//! Columns that repeat a range: in another unit, filtered, or as the voltage from which it was computed.
 
 use super::column::{Column, Role};
 use super::plan::{Plan, guess};
@@ -7,19 +7,19 @@ use crate::names;
 use crate::options::{Options, RangeUnit};
 use crate::value::{self, Value};
 
-/// Speeds of sound that sketches divide by, in m/s.
+/// Speeds of sound by which sketches divide, in m/s.
 const SPEEDS: (f64, f64) = (325.0, 360.0);
-/// Lengths of one unit in another, where no name and no cell says the unit.
+/// Ratios of units of length, for columns whose name and cells do not give the unit.
 const RATIOS: [f64; 8] = [10.0, 100.0, 1000.0, 2.54, 25.4, 39.37, 30.48, 12.0];
-/// More columns are no sensors beside their copies.
+/// Number of columns above which they are not sensors with copies.
 const MOST: usize = 64;
 
-/// A row, and its number or nothing for no echo.
+/// A row, and its number, or `None` for no echo.
 type Cell = (usize, Option<f64>);
 
 /// A column's numbers in its rows, with its resolution.
 struct Series {
-    /// Rows without the column have none.
+    /// Cells of the column; rows without the column have none.
     cells: Vec<Cell>,
     resolution: f64,
     unit: Option<RangeUnit>,
@@ -27,7 +27,7 @@ struct Series {
 }
 
 impl Plan {
-    /// Leaves out columns that repeat another.
+    /// Omits columns that repeat another.
     pub(super) fn repetitions(&mut self, lines: &[(u64, &str)], options: &Options) {
         let ranges = |plan: &Self| -> Vec<usize> {
             (0..plan.columns.len()).filter(|&index| plan.columns[index].role == Role::Range).collect()
@@ -90,8 +90,8 @@ impl Plan {
         }
     }
 
-    /// Leaves out the further echoes of each firing: `Value`, `Value1`, `Value2`, .., each later than the one before in
-    /// all rows, and nothing after the last.
+    /// Omits the further echoes of each firing: `Value`, `Value1`, `Value2`, .., each later than the one before in all
+    /// rows, with none after the last.
     fn further_echoes(&mut self, found: &[usize], rows: &[Vec<(usize, String)>], said: &mut Vec<String>) {
         let name = |index: usize| self.columns[index].name.as_str();
         let stem = |index: usize| name(index).trim_end_matches(|letter: char| letter.is_ascii_digit());
@@ -120,7 +120,7 @@ impl Plan {
         left.into_iter().for_each(|index| self.columns[index].role = Role::Other);
     }
 
-    /// The unit to keep and the one to leave of a column whose cells say each range twice, in two units by turns.
+    /// The units to keep and to drop for a column whose cells alternately repeat each range in two units.
     fn twice(&self, index: usize, rows: &[Vec<(usize, String)>]) -> Option<(RangeUnit, RangeUnit)> {
         let cells = rows.iter().flatten().filter(|cell| cell.0 == index);
         let cells = cells.filter_map(|(_, text)| match value::range(text, self.decimal_comma)? {
@@ -142,7 +142,7 @@ impl Plan {
         is_twice.then_some(if is_metric(first) || !is_metric(second) { (first, second) } else { (second, first) })
     }
 
-    /// The cells of each row by their columns.
+    /// The cells of each row by column.
     pub(super) fn split(&self, lines: &[(u64, &str)]) -> Vec<Vec<(usize, String)>> {
         let index = |name: &String| self.columns.iter().position(|column| column.name == *name);
         let named = |pairs: Vec<(String, String)>| {
@@ -185,8 +185,8 @@ impl Plan {
 }
 
 impl Series {
-    /// Pairs of numbers of the same rows, or one after the other if no row has both; nothing where one has an echo and
-    /// the other has none.
+    /// Pairs of numbers of the same rows, or consecutive ones if no row has both; `None` if only one of the two has an
+    /// echo.
     fn pairs(&self, other: &Self) -> Vec<Option<(f64, f64)>> {
         let (one, two) = (&self.cells, &other.cells);
         let shares = one.iter().filter(|cell| two.binary_search_by_key(&cell.0, |other| other.0).is_ok()).count();
@@ -204,7 +204,7 @@ impl Series {
         one.iter().zip(two).filter_map(pair).collect()
     }
 
-    /// Returns true if the other is this one in another unit, or its copy.
+    /// Returns true if the other column is this one in another unit, or its copy.
     fn is_repeated_by(&self, other: &Self, columns: [&Column; 2]) -> bool {
         let pairs = self.pairs(other);
         let distinct = self.distinct.min(other.distinct);
@@ -231,8 +231,8 @@ impl Series {
             && ratios.any(|(low, high)| is_precise(low, high) || is_precise(1.0 / low, 1.0 / high))
     }
 
-    /// Width of the ratio, by the pairs that have one between two; nothing if fewer than 95 % have one. A number
-    /// may be rounded or cut.
+    /// The width of the interval of ratios that at least 95 % of the pairs have; `None` if fewer do. Numbers may be
+    /// rounded or cut.
     fn holds(&self, other: &Self, pairs: &[Option<(f64, f64)>], one: f64, two: f64) -> Option<f64> {
         let (low, high) = (one.min(two), one.max(two));
         let (mut fit, mut least, mut most) = (0, 0.0f64, f64::INFINITY);
@@ -246,7 +246,7 @@ impl Series {
         (fit > 1 && fit * 20 >= pairs.len() * 19 && least > 0.0).then_some(most / least)
     }
 
-    /// Returns true if it is metric and the other is not, or finer in the same measure.
+    /// Returns true if it is metric and the other is not, or if it is finer in the same measure.
     fn is_better_than(&self, other: &Self) -> bool {
         let is_metric = |series: &Self| !matches!(series.unit, Some(RangeUnit::In | RangeUnit::Ft));
         let share = |series: &Self| {

@@ -23,7 +23,7 @@ pub(super) struct Rows<'a, 's, 'e> {
     /// The sensor of each column.
     sensors: Vec<Option<usize>>,
     by_label: HashMap<String, usize>,
-    /// Labels of sensors that were met once.
+    /// Labels of sensors that occurred once.
     once: BTreeSet<String>,
     is_first: bool,
     others: u64,
@@ -33,7 +33,7 @@ pub(super) struct Rows<'a, 's, 'e> {
     /// Midnights since the log began.
     midnights: u64,
     latest_ns: u64,
-    /// Nanoseconds that a counter of 32 bits has lost, and its time in the row before.
+    /// Nanoseconds lost by wraps of a 32-bit counter, and its time in the row before.
     wrapped_ns: u64,
     counted_ns: u64,
 }
@@ -41,7 +41,7 @@ pub(super) struct Rows<'a, 's, 'e> {
 /// The cells of a line, each with its column.
 type Cells = Vec<(usize, String)>;
 
-/// Reason why a line gives no reading.
+/// Reason why a line yields no reading.
 enum Unread {
     /// The column has no role.
     Other,
@@ -206,7 +206,7 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
         Ok((time, pairs))
     }
 
-    /// A line that only says that nothing was heard, where each line has the range of one sensor.
+    /// Returns true for a line that only reports silence, if each line has the range of one sensor.
     fn silence(&self, text: &str) -> Option<Vec<(String, String)>> {
         let [name] = self.plan.usual_names.as_deref()? else { return None };
         let text = text.trim_end_matches(['.', '!']).to_lowercase();
@@ -214,7 +214,7 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
         is_said.then(|| vec![(name.clone(), text)])
     }
 
-    /// Returns true for words without a number, of which none is a sensor's name or a word for no echo.
+    /// Returns true for words without a number, none of which is a sensor's name or a word for no echo.
     fn is_sentence(&self, text: &str) -> bool {
         let mut words = text.split(|letter: char| !letter.is_ascii_alphabetic());
         !text.contains(|letter: char| letter.is_ascii_digit() || ",;|\t:=\"".contains(letter))
@@ -244,7 +244,7 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
         cells.last().map_or(Ok(()), |last| self.ends_whole(line, cells.len() - 1, last))
     }
 
-    /// Refuses a last line that no line break ends and whose last value is shorter than others were: it may be cut.
+    /// Refuses a last line without a line break whose last value is shorter than others: it may be cut.
     fn ends_whole(&mut self, line: &Line, index: usize, last: &str) -> Result<(), Unread> {
         let column = &mut self.plan.columns[index];
         if !line.is_ended && last.len() < column.longest {
@@ -350,7 +350,7 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
         Ok(())
     }
 
-    /// Times of day begin again at midnight.
+    /// Corrects times of day that begin again at midnight.
     fn after_midnight(&mut self, ns: u64) -> u64 {
         if ns >= DAY_NS {
             return ns;
@@ -364,7 +364,7 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
         self.latest_ns
     }
 
-    /// Counters of milliseconds and microseconds have 32 bits, and begin again.
+    /// Corrects 32-bit counters of milliseconds and microseconds that wrap.
     fn after_wrap(&mut self, ns: u64) -> u64 {
         /// The longest pause of a sensor; after a longer one it has restarted.
         const LONGEST_PAUSE_NS: u64 = 10_000_000_000;
@@ -379,7 +379,7 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
         self.counted_ns
     }
 
-    /// The sensor with this label; one that the first lines do not have is believed when it comes again.
+    /// The sensor with this label; a label that the first lines do not have is accepted when it occurs again.
     fn labelled(&mut self, label: String) -> Result<usize, Unread> {
         if let Some(&sensor) = self.by_label.get(&label) {
             return Ok(sensor);
@@ -395,7 +395,7 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
         Ok(sensor)
     }
 
-    /// The range in metres; infinite without echo.
+    /// The range in metres; infinite without an echo.
     fn range_m(&self, text: &str, column: &Column, of_row: Option<RangeUnit>) -> Result<f64, Unread> {
         let (name, unit) = (&column.name, column.unit);
         let no_echo = &self.plan.no_echo;
@@ -431,7 +431,7 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
         })
     }
 
-    /// Tells what was left out.
+    /// Reports the omitted parts.
     pub(super) fn end(self, left_out: u64) {
         let skipped = &mut self.sink.report.skipped;
         if left_out > 0 {

@@ -1,4 +1,4 @@
-//! The first lines of a text: what stands before each, and how their values are parted.
+//! The first lines of a text: their prefixes, and how their values are separated.
 
 use std::collections::BTreeMap;
 
@@ -21,7 +21,7 @@ pub(crate) fn is_comment(text: &str) -> bool {
         || text.get(..4).is_some_and(|start| start.eq_ignore_ascii_case("sep="))
 }
 
-/// Lines without comments, with what a serial monitor puts before them taken off.
+/// Lines without comments and without the prefixes of a serial monitor.
 pub(super) struct Stripped<'a> {
     pub(super) lines: Vec<(u64, &'a str)>,
     pub(super) has_prefix: bool,
@@ -58,7 +58,7 @@ pub(super) fn strip(sample: &[Line]) -> Stripped<'_> {
     Stripped { lines: lines.into_iter().map(strip).collect(), has_prefix, has_rules }
 }
 
-/// The shape that fits most lines best, and whether numbers have a decimal comma.
+/// The shape that fits most lines best, and true if numbers have a decimal comma.
 pub(super) fn shape_of(lines: &[(u64, &str)]) -> (Shape, bool) {
     let total = lines.len().max(1);
     let json = lines.iter().filter(|(_, text)| text.contains('{') && shape::object(text).is_some()).count();
@@ -109,7 +109,7 @@ pub(super) fn shape_of(lines: &[(u64, &str)]) -> (Shape, bool) {
     (Shape::Separated(best.1), best.2)
 }
 
-/// The number that comes most often.
+/// The most frequent number.
 pub(super) fn usual(numbers: impl Iterator<Item = usize>) -> usize {
     let mut counts = BTreeMap::new();
     numbers.for_each(|number| *counts.entry(number).or_insert(0) += 1);

@@ -5,11 +5,11 @@ use serde_json::Value as Json;
 use crate::names::{self, Meaning, meaning};
 use crate::value;
 
-/// Separation of a line into cells.
+/// The way in which a line is separated into cells.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Shape {
     Separated(Separator),
-    /// `left: 40, right: 80`.
+    /// Pairs: `left: 40, right: 80`.
     Keyed,
     #[default]
     Json,
@@ -22,7 +22,7 @@ pub(crate) enum Separator {
     Tab,
     Bar,
     Spaces,
-    /// One cell a line.
+    /// One cell for each line.
     None,
 }
 
@@ -51,20 +51,20 @@ impl Separator {
     }
 }
 
-/// Returns true for a line of dashes, or of another sign, between rows or messages.
+/// Returns true for a line of dashes or other signs between rows or messages.
 pub(super) fn is_rule(text: &str) -> bool {
     let text = text.trim();
     let is_of = |sign| text.contains(sign) && text.replace([sign, '+', '|'], "").is_empty();
     text.len() >= 3 && ['-', '=', '*', '_'].into_iter().any(is_of)
 }
 
-/// Returns true for the line between a header and its rows, as `sqlite3`, `psql` and Markdown draw it.
+/// Returns true for the line between a header and its rows, as in `sqlite3`, `psql` and Markdown.
 pub(super) fn is_underline(cells: &[String]) -> bool {
     let is_part = |cell: &String| cell.trim_matches([':', '+', '-', '=']).is_empty();
     cells.iter().all(is_part) && cells.iter().any(|cell| cell.contains("--") || cell.contains("=="))
 }
 
-/// The brackets around a line, as Python prints a list.
+/// A line without the brackets with which Python prints a list.
 fn without_brackets(line: &str) -> &str {
     if line.starts_with(|letter: char| letter.is_ascii_digit()) {
         return line;
@@ -90,7 +90,7 @@ fn without_half_brackets(cell: &str) -> &str {
     }
 }
 
-/// The cells of a line, without quotes and spaces around them; nothing if a quote is not closed.
+/// The cells of a line, without quotes and surrounding spaces; `None` if a quote is not closed.
 pub(crate) fn separated(line: &str, separator: Separator) -> Option<Vec<String>> {
     let line = without_brackets(line.trim_matches([' ', '\u{feff}']));
     let Some(letter) = separator.letter() else {
@@ -141,10 +141,10 @@ pub(crate) fn separated(line: &str, separator: Separator) -> Option<Vec<String>>
     (!is_quoted).then_some(cells)
 }
 
-/// The pairs of a line: each value behind a colon or an equals sign, with the words before it as its name; nothing if
-/// it holds anything else.
+/// The pairs of a line: each value after a colon or an equals sign, with the words before it as its name; `None` if it
+/// holds anything else.
 ///
-/// Words before a name that are none of it do not count: a program, a decision, the number of a loop, the name of a
+/// Words before a name that are not part of it are ignored: a program, a decision, the number of a loop, the name of a
 /// message around it.
 pub(crate) fn keyed(line: &str) -> Option<Vec<(String, String)>> {
     const BETWEEN: [char; 6] = [',', ';', '|', '\t', ' ', '&'];
@@ -272,7 +272,7 @@ fn is_instant(text: &str) -> bool {
     (13..=19).contains(&text.len()) && text.bytes().all(|byte| byte.is_ascii_digit())
 }
 
-/// The name at the end of what stands between two values.
+/// The name at the end of the text between two values.
 fn name_in(before: &str, is_equal: bool) -> &str {
     if before.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_') {
         return before;
@@ -308,7 +308,7 @@ fn sentence(line: &str) -> Option<Vec<(String, String)>> {
     (is_sentence && unit.is_some() && name.len() <= 40).then(|| vec![(name.to_owned(), text.to_owned())])
 }
 
-/// The pairs of a line of names with values right behind them, as `F40 L80` or `R0756`.
+/// The pairs of a line of names with values directly after them, such as `F40 L80` or `R0756`.
 fn glued(line: &str) -> Option<Vec<(String, String)>> {
     let mut pairs: Vec<(String, String)> = vec![];
     for cell in line.split([' ', '\t', ',', ';']).filter(|cell| !cell.is_empty()) {
@@ -322,7 +322,7 @@ fn glued(line: &str) -> Option<Vec<(String, String)>> {
     (!pairs.is_empty()).then_some(pairs)
 }
 
-/// The values of a JSON object by their paths, or of an array by their places; nothing if it is neither.
+/// The values of a JSON object by path, or of an array by place; `None` for anything else.
 fn json(text: &str) -> Option<Vec<(String, String)>> {
     // Python writes what JSON has no number for.
     let plain = || text.replace("-Infinity", "null").replace("Infinity", "null").replace("NaN", "null");
@@ -337,8 +337,8 @@ fn json(text: &str) -> Option<Vec<(String, String)>> {
     Some(pairs)
 }
 
-/// The pairs of an object, with what stands before it as `topic` if it is a path, as an MQTT client prints it, and as
-/// `before` else.
+/// The pairs of an object; the text before it becomes `topic` if it is a path, as an MQTT client prints it, and
+/// otherwise `before`.
 pub(crate) fn object(text: &str) -> Option<Vec<(String, String)>> {
     let lead = text.find(['{', '[']).map_or("", |at| &text[..at]);
     let mut pairs = json(&text[lead.len()..])?;
@@ -351,7 +351,7 @@ pub(crate) fn object(text: &str) -> Option<Vec<(String, String)>> {
 }
 
 fn flatten(path: &str, value: &Json, pairs: &mut Vec<(String, String)>) {
-    /// More belong to no ring.
+    /// Largest number of values of a ring.
     const MOST: usize = 4096;
     if pairs.len() >= MOST {
         return;

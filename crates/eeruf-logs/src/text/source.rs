@@ -1,5 +1,5 @@
-//! The bytes of a text in whatever encoding, as what it is: lines, objects of a JSON document, or messages as
-//! `ros2 topic echo` and `rostopic echo` print them.
+//! The text of a file in any encoding, as lines, as objects of a JSON document, or as messages printed by `ros2 topic
+//! echo` and `rostopic echo`.
 
 use std::collections::VecDeque;
 use std::io::{self, BufRead, BufReader, Read};
@@ -14,23 +14,23 @@ use super::messages::{self, End};
 pub(crate) struct Source<'a> {
     form: Form<'a>,
     pending: VecDeque<Line>,
-    /// Lines that a board, a monitor or a logger wrote by itself.
+    /// Number of lines that a board, a monitor or a logger wrote by itself.
     pub(super) left_out: u64,
-    /// Noise of a board's start may stand here: before the first line, and after a message of the start.
+    /// True where noise of a board's boot may occur: before the first line, and after a boot message.
     may_be_noise: bool,
     boot: Boot,
 }
 
-/// A line that seems to hold a reading and does not fit the form is a misfit.
+/// A function that rewrites lines. A line that seems to hold a reading but does not fit the form is a misfit.
 type Rewriter = Box<dyn FnMut(&str) -> Rewritten>;
 
 enum Form<'a> {
     Lines(Lines<'a>),
     Objects(Objects<'a>),
     Messages(Lines<'a>, End),
-    /// An ArduPilot log as text: many tables in one file, of which one holds ranges.
+    /// An ArduPilot log as text: many tables in one file, one of which has ranges.
     DataFlash(Lines<'a>),
-    /// Lines that wrap readings in a form of their own, which has a name, rewritten into lines that are read anyway.
+    /// Lines that wrap readings in a named form, rewritten into lines that can be read.
     Rewritten(Lines<'a>, &'static str, Rewriter),
 }
 
@@ -77,7 +77,7 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// The form of a text that is records and no lines.
+    /// The form of a text made of records instead of lines.
     pub(crate) const fn of_records(&self) -> Option<&'static str> {
         match &self.form {
             Form::Lines(_) => None,
@@ -89,7 +89,7 @@ impl<'a> Source<'a> {
         }
     }
 
-    /// Returns true for records of which each is an object.
+    /// Returns true for records that are objects.
     pub(super) const fn is_of_objects(&self) -> bool {
         matches!(self.form, Form::Objects(_) | Form::Messages(..))
     }
@@ -149,7 +149,7 @@ impl<'a> Form<'a> {
     }
 }
 
-/// The form of a text whose lines are rewritten, by its beginning.
+/// The form of a text whose lines are rewritten, from its beginning.
 fn rewriter(start: &str) -> Option<(&'static str, Rewriter)> {
     // The last line may not be whole, and the first may be cut.
     let whole = start.rsplit_once('\n').map_or(start, |(whole, _)| whole);
@@ -171,7 +171,7 @@ fn rangefinder(line: &str) -> Option<String> {
     Some(cells.join(","))
 }
 
-/// Transcodes UTF-16 to UTF-8.
+/// A reader that transcodes UTF-16 to UTF-8.
 struct Utf16<R> {
     input: R,
     is_big: bool,

@@ -1,4 +1,4 @@
-//! Columns that say of a range beside them whether it was measured at all.
+//! Columns that say if the range beside them was measured.
 
 use super::column::{Column, Role};
 use super::plan::{Plan, Says, Validity, guess};
@@ -6,7 +6,7 @@ use crate::names;
 use crate::value;
 
 impl Validity {
-    /// The range that a cell makes of one that it says is none.
+    /// The range that an invalid cell means.
     pub(super) fn of(self, range: usize, text: impl Fn(usize) -> Option<String>, decimal_comma: bool) -> Option<f64> {
         if self.range.is_some_and(|own| own != range) {
             return None;
@@ -58,7 +58,7 @@ fn meaning(column: &Column) -> Option<(Says, &'static str)> {
 }
 
 impl Plan {
-    /// Finds what says whether ranges are any.
+    /// Finds the columns that say if ranges are valid.
     pub(super) fn validities(&mut self) {
         let ranges: Vec<usize> =
             (0..self.columns.len()).filter(|&index| self.columns[index].role == Role::Range).collect();

@@ -1,4 +1,4 @@
-//! Files that are cut off or have a wrong byte.
+//! Files that are cut or have a wrong byte.
 
 use std::path::{Path, PathBuf};
 
@@ -71,7 +71,7 @@ fn a_recording_that_was_cut_off_gives_all_its_whole_messages() {
     assert_eq!(kept, (0..=all.len()).collect::<Vec<_>>());
 }
 
-/// Where the chunks of an MCAP file begin.
+/// Positions of the chunks of an MCAP file.
 fn mcap_chunks(bytes: &[u8]) -> Vec<usize> {
     let (mut at, mut chunks) = (8, vec![]);
     while at + 9 < bytes.len() {
@@ -123,7 +123,7 @@ fn a_wrong_length_in_mcap_takes_no_more_than_its_chunk() {
     }
 }
 
-/// The records of a ROS 1 bag: where each begins and what its header's `op` is.
+/// The records of a ROS 1 bag: positions, and the `op` of their headers.
 fn ros1_records(bytes: &[u8]) -> Vec<(usize, u8)> {
     let (mut at, mut records) = (13, vec![]);
     let number = |at: usize| u32::from_le_bytes(bytes[at..at + 4].try_into().unwrap()) as usize;

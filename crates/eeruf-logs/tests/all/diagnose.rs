@@ -20,7 +20,7 @@ struct World {
 impl World {
     const HEALTHY: Self = Self { phases: 7, shifts: true, deaf: None };
 
-    /// The log of this many periods, and whose sound each reading is.
+    /// The log of this many periods, and the sender of each reading.
     fn log(&self, seed: u64, periods: i64) -> (FiringLog, Vec<Option<usize>>) {
         let random = &mut Random(seed);
         let mut travel = [[[0; 2]; SENSORS]; SENSORS];
@@ -79,7 +79,7 @@ impl World {
     }
 }
 
-/// The share of the readings with another's sound that is named rightly, and the share of the names that are right.
+/// The share of foreign readings that are named correctly, and the share of correct names.
 fn named(log: &FiringLog, truth: &[Option<usize>], found: &Diagnosis) -> (f64, f64) {
     let (mut foreign, mut right, mut named) = (0, 0, 0);
     for ((firing, truth), name) in log.firings.iter().zip(truth).zip(&found.named) {

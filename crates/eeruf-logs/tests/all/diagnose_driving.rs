@@ -1,5 +1,5 @@
-//! `diagnose` on the log of a ring that drives towards things and away from them, where the sender of each reading is
-//! known, and how fast its path shortens.
+//! `diagnose` on the log of a ring that drives towards objects and away from them, with known senders and rates of
+//! their paths.
 
 use eeruf_logs::{Diagnosis, Firing, FiringLog, Settings, diagnose};
 
@@ -9,11 +9,11 @@ const SENSORS: usize = 6;
 const PERIOD: i64 = 60_000;
 const WINDOW: i64 = 36_000;
 
-/// A sound on its way: whose, and by how many microseconds its path lengthens each second.
+/// A sound in flight: its sender, and the change of its path in microseconds a second.
 type Sent = (usize, f64);
 
-/// The log of a ring of this many phases, and what each reading heard. Each pair has two paths, which shorten at 1 to
-/// 1.9 m/s until the robot is near, and lengthen again as it backs.
+/// The log of a ring of this many phases, and the sender of each reading. Each pair has two paths, which shorten at 1
+/// to 1.9 m/s until the robot is near, and lengthen again as it backs.
 fn driven(seed: u64, periods: i64, phases: i64) -> (FiringLog, Vec<Option<Sent>>) {
     let random = &mut Random(seed);
     let mut paths = [[[(0.0, 0.0); 2]; SENSORS]; SENSORS];
@@ -75,7 +75,7 @@ fn driven(seed: u64, periods: i64, phases: i64) -> (FiringLog, Vec<Option<Sent>>
     (FiringLog::new("test", firings), truth)
 }
 
-/// The share of the readings with another's sound that is named rightly, and the share of the names that are right.
+/// The share of foreign readings that are named correctly, and the share of correct names.
 fn named(log: &FiringLog, truth: &[Option<Sent>], found: &Diagnosis) -> (f64, f64) {
     let (mut foreign, mut right, mut named) = (0, 0, 0);
     for ((firing, truth), name) in log.firings.iter().zip(truth).zip(&found.named) {

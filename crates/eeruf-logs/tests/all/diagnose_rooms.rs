@@ -1,4 +1,4 @@
-//! `diagnose` on logs of the simulator: rings in alcoves and other rooms, whole and with one fault.
+//! `diagnose` on logs of the simulator: rings in alcoves and other rooms, without faults and with one fault.
 
 use eeruf_logs::{Finding, Firing, FiringLog, Settings, Symptom, diagnose};
 use eeruf_sim::experiments::rooms::{RoomKind, RoomPlan};

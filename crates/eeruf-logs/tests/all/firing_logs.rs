@@ -1,4 +1,4 @@
-//! Firing logs as people have them: any separator, frames of the serial line, damaged lines.
+//! Firing logs in the wild: any separator, frames of the serial line, damaged lines.
 
 use eeruf_core::{Instant, Micros, ReadingKind};
 use eeruf_logs::{Firing, FiringLog, Options};

@@ -1,4 +1,4 @@
-//! Flight logs, written byte by byte as their documents have them.
+//! Flight logs, written byte by byte according to their specifications.
 
 use std::path::Path;
 
@@ -18,7 +18,7 @@ fn padded(text: &str, length: usize) -> Vec<u8> {
     bytes
 }
 
-/// Echoes of a log to the centimetre.
+/// Echoes of a log, rounded to centimetres.
 fn cm(readings: &[(usize, u64, Echo)]) -> Vec<i64> {
     let of = |echo: &Echo| if let Echo::At(m) = echo { (100.0 * m).round() as i64 } else { -1 };
     readings.iter().map(|(.., echo)| of(echo)).collect()

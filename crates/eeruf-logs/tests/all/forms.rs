@@ -1,12 +1,12 @@
-//! Logs in the forms that people have, each with its right answer, which stand in `tests/data`.
+//! Logs in the forms that users have, each with its correct answer from `tests/data`.
 
 use std::io::Write as _;
 use std::path::Path;
 
 use eeruf_logs::{Echo, FieldChoice, Options, Pattern, RangeUnit, Report, Table, read_log, read_stream};
 
-/// A log's contents: each sensor's name and its ranges in metres, `-` for no echo, `<` for too close, `!` for no
-/// number; and the seconds between its first two readings.
+/// A log's contents: each sensor's name and ranges in metres, `-` for no echo, `<` for too close, `!` for no number;
+/// and the seconds between its first two readings.
 pub(crate) fn said(bytes: &[u8], options: &Options) -> (String, Option<f64>, Report) {
     let mut readings = vec![];
     let report = read_stream(bytes, Path::new("log"), options, |_, reading| readings.push(*reading)).unwrap();
@@ -28,8 +28,8 @@ pub(crate) fn said(bytes: &[u8], options: &Options) -> (String, Option<f64>, Rep
 /// A form: name, text, sensors, and seconds between the first two readings.
 type Form = (String, String, String, Option<f64>);
 
-/// The forms of a file: `== NAME == SENSORS == SECONDS`, and the lines of the log up to the next one. `\t`, `\r`,
-/// `\u{HEX}` stand for themselves, and a last `\` for a text that no line break ends.
+/// The forms of a file: `== NAME == SENSORS == SECONDS`, and the lines of the log up to the next one. `\t`, `\r` and
+/// `\u{HEX}` are escapes; a final `\` means a text without a last line break.
 fn forms(file: &str) -> Vec<Form> {
     let blocks = file.strip_prefix("== ").unwrap().split("\n== ");
     let plain = |text: &str| {
@@ -294,8 +294,8 @@ fn sensors_that_read_alike_stay_sensors() {
     assert_eq!(said(rows(&|cm| (cm * 10).to_string()).as_bytes(), &Options::default()).2.sensors.len(), 1);
 }
 
-/// Forms that were written down, with their answers, before the reader saw them: right, refused or with damage said,
-/// and silently wrong.
+/// Results on forms whose answers were written down before the reader saw them: correct, refused or reported as
+/// damaged, and silently wrong.
 fn tried(file: &str) -> (usize, Vec<String>, Vec<String>) {
     let (mut right, mut open, mut wrong) = (0, vec![], vec![]);
     for (name, text, sensors, step) in forms(file) {

@@ -37,7 +37,7 @@ const BAGS: [&str; 10] = [
     "mcap-jazzy-zstd",
 ];
 
-/// Copies a bag into a folder; `SQLite` ones are made from their SQL.
+/// Copies a bag into a folder; `SQLite` bags are made from SQL.
 fn bag(name: &str, folder: &Path) -> PathBuf {
     let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/bags").join(name);
     let to = folder.join(name);
@@ -59,7 +59,7 @@ fn bag(name: &str, folder: &Path) -> PathBuf {
     to
 }
 
-/// All readings of a log, which are the same from its file, from memory, and as a stream.
+/// All readings of a log, checked to be the same from its file, from memory, and as a stream.
 fn read(file: &Path, options: &Options) -> Result<(Report, Vec<LogReading>), FileError> {
     let of_file = read_by(|each| read_log(file, options, each));
     if let Ok(bytes) = std::fs::read(file) {

@@ -1,4 +1,4 @@
-//! Damaged text: nothing is read from a damaged line, and nothing fails.
+//! Damaged text: no reading comes from a damaged line, and nothing panics.
 
 use std::collections::HashSet;
 use std::path::Path;
@@ -7,7 +7,7 @@ use eeruf_logs::{Options, read_stream};
 
 use crate::random::Random;
 
-/// Logs of 40 rows whose values have three digits each, so that a part of one is none of them.
+/// Logs of 40 rows whose values have three digits each, so that a part of a value is not a value.
 fn logs() -> Vec<String> {
     let value = |row: usize, sensor: usize| 200 + (row * 37 + sensor * 101) % 250;
     let rows = |line: &dyn Fn(usize) -> String| (0..40).map(|row| line(row) + "\n").collect::<String>();
@@ -51,7 +51,7 @@ fn logs() -> Vec<String> {
     ]
 }
 
-/// The sensors' names and ranges in centimetres; infinite ones are no echoes.
+/// The sensors' names and ranges in centimetres; infinite ones mean no echo.
 fn read(bytes: &[u8]) -> Vec<(String, f64)> {
     let mut readings = vec![];
     let report = read_stream(bytes, Path::new("log"), &Options::default(), |report, reading| {

@@ -1,4 +1,4 @@
-//! A flow ring's log is judged again as the ring judged it.
+//! A flow ring's log, judged again like the ring itself.
 
 use eeruf_core::flow::{BeliefSettings, FlowRing, TurnSettings, Votes};
 use eeruf_core::judge::Judge as _;
@@ -12,14 +12,14 @@ const SENSORS: usize = 8;
 const WINDOW: Micros = Micros::from_millis(25);
 const BLANKING: Micros = Micros::new(300);
 
-/// A ring's log, and what it believed after each firing.
+/// A ring's log, and its beliefs after each firing.
 struct Ran {
     log: FiringLog,
     settings: FlowSettings,
     believed: Vec<Option<Micros>>,
 }
 
-/// A ring whose loop is late by up to `late`, in a world of own walls and foreign paths, with a clock that wraps.
+/// Runs a ring whose loop is late by up to `late`, with own walls, foreign paths, and a clock that wraps.
 fn ran(seed: u64, belief: BeliefSettings, late: u32, silence: Silence, speed_mm_s: Option<u32>) -> Ran {
     let random = &mut Random(seed);
     let begins = u32::MAX - 2_000_000;
@@ -82,7 +82,7 @@ fn ran(seed: u64, belief: BeliefSettings, late: u32, silence: Silence, speed_mm_
     Ran { log: FiringLog::new("test", firings), settings, believed }
 }
 
-/// Number of readings of which kind and belief are judged again as the ring did, of how many.
+/// Number of readings whose kind and belief are judged as by the ring, and number of all.
 fn equal(log: &FiringLog, ran: &Ran) -> (usize, usize) {
     let again = replay_flow(log, &ran.settings).unwrap();
     let rows = log.firings.iter().zip(&again).zip(&ran.believed);

@@ -26,7 +26,7 @@ fn room(random: &mut Random) -> Travel {
     travel
 }
 
-/// The log of a survey; of a hundred firings this many meet a stray noise first.
+/// The log of a survey; this many of a hundred firings meet a stray noise first.
 fn log(travel: &Travel, random: &mut Random, strays: i64) -> FiringLog {
     let plan = SurveyPlan::new(SENSORS as u8).with_leads(24, Micros::new(500));
     let mut firings = vec![];
@@ -58,7 +58,7 @@ fn log(travel: &Travel, random: &mut Random, strays: i64) -> FiringLog {
     FiringLog::new("test", firings)
 }
 
-/// Returns true if a path is one of the room's.
+/// Returns true if the room has this path.
 fn is_there(travel: &Travel, sender: u8, receiver: u8, travel_us: f64) -> bool {
     travel[usize::from(sender)][usize::from(receiver)].iter().any(|&us| (us as f64 - travel_us).abs() < 60.0)
 }

@@ -1,5 +1,5 @@
-//! The doctor's verdicts on logs of which the truth is known: no false `none seen`, nobody blamed for nothing.
-//! `cargo run --release --example verdicts` counts over more.
+//! The doctor's verdicts on logs with known truth: no false `none seen`, and no false blame. `cargo run --release
+//! --example verdicts` counts over more.
 
 use std::fmt;
 
@@ -10,15 +10,15 @@ use crate::worlds::{Healthy, blocking_loop, free_running, healthy};
 /// Counts over logs.
 #[derive(Debug, Default)]
 pub(crate) struct Counts {
-    /// Free-running logs with 5 % wrong readings and more: all, called none seen, and with a suspect or a fooled
-    /// sensor.
+    /// Free-running logs with at least 5 % wrong readings: all, those called none seen, and those with a suspect or a
+    /// fooled sensor.
     pub(crate) free: [usize; 3],
-    /// Pairs that fool in 60 % of the rounds of a blocking loop: all, named with the test, and named where nobody
-    /// fools.
+    /// Pairs that fool in 60 % of the rounds of a blocking loop: all, those named with the test, and those named
+    /// falsely.
     pub(crate) pairs: [usize; 3],
-    /// Healthy logs: all, blamed, and with a suspect where nothing chatters.
+    /// Healthy logs: all, those blamed, and those with a suspect though nothing chatters.
     pub(crate) healthy: [usize; 3],
-    /// Logs with stamps of firings in turn or by alternating lags, without chatter: all, and called none seen.
+    /// Logs with stamps of firings in turn or by alternating lags, without chatter: all, and those called none seen.
     pub(crate) seen: [usize; 2],
 }
 
@@ -27,7 +27,7 @@ fn is_blamed(found: &Examination) -> bool {
 }
 
 impl Counts {
-    /// Over as many logs of each kind, from a seed on.
+    /// Counts over this many logs of each kind, from a seed on.
     pub(crate) fn of(first: u64, logs: u64) -> Self {
         let mut all = Self::default();
         for seed in first..first + logs {

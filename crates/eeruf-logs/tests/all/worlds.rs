@@ -1,4 +1,4 @@
-//! Logs of rings that are drawn at random, with the share of wrong readings and who fools whom.
+//! Random logs of rings, with the share of wrong readings and which sensors fool which.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -14,7 +14,7 @@ pub(crate) struct Log {
     text: String,
     /// The share of the readings that are another's sound.
     pub(crate) wrong: f64,
-    /// By sender and receiver the share of the rounds in which it is fooled.
+    /// By sender and receiver, the share of the rounds in which the receiver is fooled.
     pub(crate) fooled: BTreeMap<(usize, usize), f64>,
 }
 
@@ -63,7 +63,7 @@ fn own(random: &mut Random, rounds: usize, step_s: f64, stands: bool) -> Vec<f64
     (0..rounds).map(|_| next()).collect()
 }
 
-/// Readings as they are printed: with 12 us of scatter, and every third log in whole centimetres.
+/// Formatting of printed readings: with 12 us of scatter, and in every third log in whole centimetres.
 struct Printed(bool);
 
 impl Printed {
@@ -78,14 +78,14 @@ impl Printed {
     }
 }
 
-/// A sensor that reads anything now and then, or none.
+/// A sensor with random readings now and then, or none.
 fn chatters(random: &mut Random, sensors: usize, chatters: bool) -> (usize, f64) {
     let (sensor, share) = (random.below(sensors as i64) as usize, random.between(0.1, 0.3));
     (if chatters { sensor } else { usize::MAX }, share)
 }
 
-/// Four modules that measure by themselves, each by its own clock, read in turn every 40 ms, every second robot
-/// driving; with or without paths between them.
+/// Four modules that measure by themselves, each by its own clock, read in turn every 40 ms; every second robot drives;
+/// with or without paths between them.
 pub(crate) fn free_running(seed: u64, crosstalk: bool, chatter: bool) -> Log {
     const ROUNDS: usize = 1000;
     const MODULES: usize = 4;
@@ -126,7 +126,7 @@ pub(crate) fn free_running(seed: u64, crosstalk: bool, chatter: bool) -> Log {
     Log { text, wrong: f64::from(wrong) / (ROUNDS * MODULES) as f64, fooled: BTreeMap::new() }
 }
 
-/// A loop of a robot that drives, which fires a sensor when the echo of the one before has ended, a line a round.
+/// A loop of a driving robot that fires each sensor when the echo of the one before has ended, a line for each round.
 pub(crate) fn blocking_loop(seed: u64, crosstalk: bool) -> Log {
     let random = &mut Random(seed);
     let (sensors, rounds) = (2 + random.below(4) as usize, 200 * (1 + random.below(3) as usize));
@@ -175,8 +175,8 @@ pub(crate) enum Healthy {
     Server,
 }
 
-/// A ring of 300 rounds in which nobody hears another; every second one drives, and in one of five one sensor sees an
-/// edge between two walls.
+/// A ring of 300 rounds without crosstalk; every second robot drives, and in one of five logs one sensor sees an edge
+/// between two walls.
 pub(crate) fn healthy(seed: u64, kind: Healthy, chatter: bool) -> Log {
     const ROUNDS: usize = 300;
     if kind == Healthy::Polled {

@@ -6,21 +6,21 @@ use super::super::timeline::{Heard, Timeline};
 use super::Guess;
 use super::prior::{MOST_RATE, Rates};
 
-/// Time before and after a reading, in milliseconds, whose readings count as evidence.
+/// Time before and after a reading, in milliseconds, whose readings serve as evidence.
 const ASKED_MS: f64 = 400.0;
-/// Change of a rate, in microseconds for each millisecond and second: a robot at 1 m/s that passes a thing at 1 m.
+/// Change of a rate, in microseconds for each millisecond and second: a robot at 1 m/s that passes an object at 1 m.
 const BEND: f64 = 2.0;
-/// The half width of the stretch of echo times over which the density of accidental readings is taken, and the width of
-/// its bins, in microseconds.
+/// Half width of the interval of echo times for the density of accidental readings, and the width of its bins, in
+/// microseconds.
 const NEAR_US: i64 = 2000;
 const BIN_US: i64 = 500;
-/// A line is looked for so far beyond the earliest and the latest echo, in microseconds.
+/// Distance beyond the earliest and the latest echo up to which a line is looked for, in microseconds.
 const BEYOND_US: i64 = 500;
 
-/// As many factorials are kept.
+/// Number of factorials that are stored.
 const FACTORIALS: u32 = 128;
 
-/// Meeting of a line and a reading.
+/// The relation of a reading to a line.
 #[derive(Clone, Copy, PartialEq)]
 enum Meets {
     Heard,
@@ -33,10 +33,10 @@ enum Meets {
 struct Trial {
     /// Time since the reading that the line goes through, in milliseconds.
     since_ms: f64,
-    /// From what a line without a rate predicts to the edge, in microseconds; infinite without echo.
+    /// Difference of the edge from the prediction of a line without a rate, in microseconds; infinite without an echo.
     off_us: f64,
     tolerance_us: f64,
-    /// Addends to the logarithm of the likelihood ratio if it is heard, and if it is missed.
+    /// Terms of the log likelihood ratio if the line is heard, and if it is missed.
     heard: f64,
     missed: f64,
 }
@@ -60,7 +60,7 @@ pub(super) struct Evidence<'a> {
     /// The earliest echo of all.
     earliest_us: i64,
     tolerance_us: i64,
-    /// By receiver and bin of echo times: how likely a reading that is not earlier lies within a microsecond of it.
+    /// By receiver and bin of echo times: the probability that a reading, if not earlier, lies within a microsecond.
     density: Vec<Vec<f64>>,
     /// The logarithms of factorials.
     factorials: Vec<f64>,
@@ -76,8 +76,8 @@ impl<'a> Evidence<'a> {
         Self { timeline, guesses, earliest_us, tolerance_us: settings.tolerance_us.max(2).into(), density, factorials }
     }
 
-    /// The logarithm of how much likelier the readings around are if this reading heard this firing, and at which rate
-    /// its path's travel time changes then. `all` are the firings that the reading may have heard.
+    /// The log likelihood ratio of the surrounding readings if this reading heard this firing, and the rate of its
+    /// path's travel time. `all` are the firings that the reading may have heard.
     pub(super) fn of(
         &self,
         receiver: u8,
@@ -95,8 +95,8 @@ impl<'a> Evidence<'a> {
         self.integrated(&trials, rates)
     }
 
-    /// Asks the readings of a line of which the sound of a sender takes as long to it as this one's. Of several at one
-    /// offset between the two firings, which say the same, the one nearest in time is asked.
+    /// Evaluates the readings that lie on a line with this one. Among several at one offset between the two firings,
+    /// which have the same information, it takes the one nearest in time.
     fn ask(&self, line: u8, sender: u8, reading: &Heard, fired_us: i64, all: &[(i64, u8)], trials: &mut Vec<Trial>) {
         let (timeline, beyond) = (self.timeline, (self.earliest_us - BEYOND_US, self.timeline.window_us + BEYOND_US));
         let at_us = reading.fired_us + reading.echo_us.unwrap_or(0);
@@ -141,9 +141,9 @@ impl<'a> Evidence<'a> {
         trials.extend(found.into_iter().map(|(_, trial)| trial));
     }
 
-    /// One reading, which may have heard this firing. As far as it lies on another line it is explained, and proves
-    /// nothing; but a line that also goes through the reading in question, from a firing that stands to this one as
-    /// there, competes there and must not compete twice.
+    /// Evaluates one reading that may have heard this firing. To the extent that it lies on another line it is
+    /// explained and proves nothing. A line that also goes through the reading in question already competes there, and
+    /// must not compete twice.
     fn trial(
         &self,
         line: u8,
@@ -175,8 +175,8 @@ impl<'a> Evidence<'a> {
         }
     }
 
-    /// The logarithm of the likelihood ratio. With `h` heard and `m` missed, and any share of heard ones as likely
-    /// before, that of the counts is `h! m! / (h + m + 1)!`.
+    /// The logarithm of the likelihood ratio. With `h` heard and `m` missed and a uniform prior of the share, that of
+    /// the counts is `h! m! / (h + m + 1)!`.
     fn ln_ratio(&self, counts: &Counts) -> f64 {
         let ln_factorial = |n: i32| {
             let known = usize::try_from(n).ok().and_then(|n| self.factorials.get(n));
@@ -186,7 +186,7 @@ impl<'a> Evidence<'a> {
         sum + ln_factorial(heard) + ln_factorial(missed) - ln_factorial(heard + missed + 1)
     }
 
-    /// The logarithm of the likelihood ratio, integrated over the rates, and the rate that gives most of it.
+    /// The log likelihood ratio, integrated over the rates, and the rate that contributes most.
     fn integrated(&self, trials: &[Trial], rates: &Rates) -> (f64, f64) {
         // Rates at which a trial meets something else.
         let mut changes = Vec::with_capacity(2 * trials.len());
@@ -223,7 +223,7 @@ impl<'a> Evidence<'a> {
     }
 }
 
-/// Trials that heard a line and that missed it.
+/// Numbers of trials that heard a line and that missed it.
 #[derive(Default)]
 struct Counts {
     heard: i32,
@@ -243,7 +243,7 @@ impl Counts {
     }
 }
 
-/// By bins of echo times: how many of the readings that are not earlier lie near, for each microsecond.
+/// By bins of echo times: the number of nearby readings for each microsecond, among those that are not earlier.
 fn density(heard: &[Heard], window_us: i64) -> Vec<f64> {
     let mut echoes: Vec<_> = heard.iter().filter_map(|of| of.echo_us).collect();
     echoes.sort_unstable();

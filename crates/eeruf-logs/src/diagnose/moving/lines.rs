@@ -1,4 +1,4 @@
-//! The lines on which named readings lie: paths, each for as long as its rate stays.
+//! The lines on which named readings lie: paths, each for as long as its rate is constant.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use super::prior::MOST_RATE;
 
 /// Pause after which a line ends, in microseconds.
 const ENDS_US: i64 = 500_000;
-/// Fewer readings are no line.
+/// Least number of readings of a line.
 const FEWEST: usize = 3;
 
 /// A reading that came along a line.
@@ -49,7 +49,7 @@ impl Line {
         (rate, first + (l - rate * t) / n, scatter_us)
     }
 
-    /// Distance of a point, if it may be the next one.
+    /// Difference of a point from the line, if it may be the next one.
     fn off_us(&self, point: &Point, tolerance_us: f64) -> Option<f64> {
         let last = self.points.last()?;
         let since_us = point.at_us - last.at_us;
@@ -106,7 +106,7 @@ pub(super) fn lines(timeline: &Timeline, settings: &Settings, named: &[Option<Na
     paths
 }
 
-/// As many lines from one sender to one receiver are followed at a time.
+/// Number of lines from one sender to one receiver that are followed at a time.
 const MOST_OPEN: usize = 16;
 
 fn path((sender, receiver): (u8, u8), line: &Line, timeline: &Timeline, settings: &Settings) -> Option<FoundPath> {

@@ -1,14 +1,14 @@
 //! Senders of readings while the robot drives.
 //!
 //! A path is then a line: over half a second its length changes at a constant rate, the same for all that lies ahead.
-//! For each firing that a reading may have heard, the readings before and after it are asked whether they lie on one
-//! line with it, at *other* offsets between the two firings: those of the receiver, and those of the sender that heard
-//! the receiver, as sound takes as long back as there. How much likelier that makes this firing is integrated over all
-//! rates, and over all shares of readings in which the path is heard; against it stands the chance of an accident.
+//! For each firing that a reading may have heard, the readings before and after are tested for lying on one line with
+//! it, at *other* offsets between the two firings: those of the receiver, and those of the sender that heard the
+//! receiver, since sound takes equally long both ways. The likelihood ratio is integrated over all rates and over all
+//! shares of readings in which the path is heard, and compared with the chance of an accident.
 //!
-//! Who hears whom how often, how long sound lives, and how fast the robot drives, is learned from the log in
-//! a few passes. From the second on a reading that lies on another line proves the less. No path is followed over the
-//! whole log, so no path is found by the test of [`super::search`]; that a name is wrong is the chance that it states.
+//! Which sensors hear each other and how often, the life of sound, and the robot's speed are learned from the log in a
+//! few passes. From the second pass on, a reading that lies on another line proves less. No path is followed over the
+//! whole log, so no path is found by the test of [`super::search`]; each name states its probability of being wrong.
 
 mod evidence;
 mod lines;
@@ -20,9 +20,9 @@ use evidence::Evidence;
 use lines::lines;
 use prior::Prior;
 
-/// Passes over the log. Each learns from the one before; more of them grow too sure of what they took for granted.
+/// Number of passes over the log. Each learns from the one before; more passes become overconfident.
 const PASSES: usize = 3;
-/// Guesses that are less likely are forgotten.
+/// Probability below which guesses are dropped.
 const LEAST: f64 = 0.001;
 
 /// A firing that a reading may have heard, and how likely it is.
@@ -35,7 +35,7 @@ pub(super) struct Guess {
     rate: f64,
 }
 
-/// Names the sender of each reading, marks those that came along no path, and gives the lines of what is named.
+/// Names the sender of each reading, marks those that came along no path, and returns the lines of the named readings.
 pub(super) fn follow(
     timeline: &Timeline,
     settings: &Settings,
@@ -80,7 +80,8 @@ pub(super) fn follow(
     lines(timeline, settings, named)
 }
 
-/// The firings that a reading may have heard, each with its probability; what is left is that it heard none of them.
+/// The firings that a reading may have heard, each with its probability; the rest is the probability that it heard
+/// none.
 fn guess(
     receiver: u8,
     reading: &Heard,

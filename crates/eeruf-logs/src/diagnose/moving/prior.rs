@@ -1,5 +1,5 @@
-//! Knowledge of a log before a single reading is looked at: who hears whom, after how long, and how fast the robot
-//! drives at the time.
+//! Prior knowledge about readings of a log: which sensors hear each other, after what time, and how fast the robot
+//! drives at each time.
 
 use super::super::Settings;
 
@@ -8,19 +8,19 @@ pub(super) const MOST_RATE: f64 = 12.0;
 /// Bins of rates, and their number.
 const BIN_RATE: f64 = 0.5;
 const BINS: usize = 48;
-/// Share of rates that may be any at all, as something may move by itself.
+/// Share of rates that may have any value, since objects may move by themselves.
 const ANY_RATE: f64 = 0.1;
-/// Rates are learned for as many periods at a time, and smoothed over neighbouring times and bins.
+/// Number of periods for which rates are learned together; they are smoothed over neighbouring times and bins.
 const PERIODS: usize = 4;
 const AROUND: usize = 2;
 const SMOOTH: [f64; 5] = [0.1, 0.2, 0.4, 0.2, 0.1];
 /// Bins of travel times.
 const TRAVELS: i64 = 10;
-/// Before anything is known: the share of readings that heard nothing of the ring, and counts to begin with.
+/// Initial share of readings that heard nothing of the ring, and initial counts.
 const NONE: f64 = 0.1;
 const COUNT: f64 = 0.3;
 
-/// The distribution of rates at a time: its sum up to the end of each bin.
+/// The distribution of rates at a time: cumulative sums at the end of each bin.
 pub(super) struct Rates([f64; BINS + 1]);
 
 impl Rates {
@@ -36,16 +36,16 @@ impl Rates {
     }
 }
 
-/// Counts that are being learned, and shares once they are.
+/// Counts while learning, shares afterwards.
 pub(super) struct Prior {
     sensors: usize,
-    /// By receiver: the senders, and itself by an earlier firing.
+    /// By receiver: the senders, and the receiver itself by an earlier firing.
     sources: Vec<f64>,
     travels: Vec<f64>,
     travel_us: i64,
     none: f64,
     readings: f64,
-    /// By time: what was learned of rates, and what that makes.
+    /// By time: the counts of rates, and their distribution.
     counts: Vec<[f64; BINS]>,
     rates: Vec<Rates>,
 }
@@ -65,7 +65,7 @@ impl Prior {
         }
     }
 
-    /// Counts of a pass, to begin with.
+    /// Initial counts of a pass.
     pub(super) fn learning(before: &Self) -> Self {
         Self {
             sources: vec![COUNT; before.sources.len()],

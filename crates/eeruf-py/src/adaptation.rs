@@ -22,11 +22,11 @@ fn rung(name: &str, schedule: &Bound<'_, PyAny>, t_delta: Micros) -> PyResult<Ru
     schedule.verified(&Requirements::new(t_delta)).map_err(Raise::raise)
 }
 
-/// Adaptive scheduling (end of Sec. 3.1): fire more slowly where too much is rejected, and faster again when it is
-/// calm.
+/// Adaptive scheduling (end of Sec. 3.1): fire more slowly if too many readings are rejected, and faster again once few
+/// are.
 ///
 /// It watches the rejection rate over windows of some periods. One noisy window moves one rung up, to a longer period;
-/// only several calm windows running move one rung down.
+/// only several consecutive calm windows move one rung down.
 ///
 /// Args:
 ///     schedules: the rungs, of equally many sensors, from the shortest period to the longest, each a
@@ -62,7 +62,7 @@ pub(crate) struct Adaptation {
     adaptation: Exclusive<OnLadder<Arc<[Rung]>>>,
 }
 
-/// Takes a fraction of 1, in thousandths.
+/// Takes a fraction of 1, as thousandths.
 fn permille(name: &str, value: Option<&Bound<'_, PyAny>>, default: u16) -> PyResult<u16> {
     // At most 1000.
     value.map_or(Ok(default), |share| number(name, share, 0.0..=1.0).map(|share| (1e3 * share).round() as u16))
@@ -102,8 +102,8 @@ impl Adaptation {
         Ok(Self { adaptation: Exclusive::new("Adaptation", adaptation) })
     }
 
-    /// Take in an event of a ring, and change the ring to another schedule when the present one should be left. Only
-    /// the ends of periods count.
+    /// Read an event of a ring, and change the ring to another schedule when that is better. Only ends of periods
+    /// matter.
     ///
     /// Args:
     ///     ring: an ``eeruf.Ring`` that began with the first schedule.
@@ -145,8 +145,8 @@ impl Adaptation {
         Ok(Schedule(*self.adaptation.get()?.rungs()[rung].schedule()))
     }
 
-    /// The share of the readings that were compared and rejected in the last whole window; None before, or if nothing
-    /// was compared in it.
+    /// The share of compared readings that were rejected in the last whole window; None before, or if nothing was
+    /// compared in it.
     #[getter]
     fn rejection_rate(&self) -> PyResult<Option<f64>> {
         let permille = self.adaptation.get()?.rejection_permille();

@@ -1,4 +1,4 @@
-//! Arguments: errors name the argument, its value and what is expected.
+//! Arguments: errors name the argument, its value and the expectation.
 
 use core::fmt::Display;
 use std::ops::RangeInclusive;
@@ -37,7 +37,7 @@ pub(crate) fn whole<T: TryFrom<i128> + TryInto<i128> + Copy>(
     Ok(within)
 }
 
-/// Warns of a value that is legal and implausible.
+/// Warns about a value that is legal but implausible.
 fn plausible(name: &str, number: f64, py: Python<'_>) -> PyResult<()> {
     let key = name.split_once('[').map_or(name, |(list, _)| list);
     eeruf_files::doubt(key, number).map_or(Ok(()), |doubt| warn(py, format_args!("{name} = {doubt}")))
@@ -54,12 +54,12 @@ pub(crate) fn micros(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Micros> {
     whole(name, value, 0..=u32::MAX).map(Micros::new)
 }
 
-/// A time in whole microseconds, or the default where there is none.
+/// A time in whole microseconds, or the default if there is none.
 pub(crate) fn micros_or(name: &str, value: Option<&Bound<'_, PyAny>>, default: Micros) -> PyResult<Micros> {
     value.map_or(Ok(default), |value| micros(name, value))
 }
 
-/// A whole number, or the default where there is none.
+/// A whole number, or the default if there is none.
 pub(crate) fn whole_or<T: TryFrom<i128> + TryInto<i128> + Copy>(
     name: &str,
     value: Option<&Bound<'_, PyAny>>,
@@ -69,7 +69,7 @@ pub(crate) fn whole_or<T: TryFrom<i128> + TryInto<i128> + Copy>(
     value.map_or(Ok(default), |value| whole(name, value, range))
 }
 
-/// Like [`whole_or`], where no number is `None`.
+/// A whole number like [`whole_or`]; no number is `None`.
 pub(crate) fn whole_or_none<T: TryFrom<i128> + TryInto<i128> + Copy>(
     name: &str,
     value: Option<&Bound<'_, PyAny>>,
@@ -89,7 +89,7 @@ pub(crate) fn text(name: &str, value: &Bound<'_, PyAny>, expected: &str) -> PyRe
     value.extract().map_err(|_| wrong(name, shown(value), expected))
 }
 
-/// A text out of a few, or the first of them where there is none.
+/// A text out of a few, or the first of them if there is none.
 pub(crate) fn choice<T: Copy>(name: &str, value: Option<&Bound<'_, PyAny>>, of: &[(&str, T)]) -> PyResult<T> {
     let said = value.map(|value| value.extract::<String>().unwrap_or_default());
     let found = of.iter().find(|(text, _)| said.as_deref().is_none_or(|said| said == *text));
@@ -108,7 +108,7 @@ pub(crate) fn instance<'a, 'py, T: pyo3::PyTypeInfo>(
     value.cast().map_err(|_| wrong(name, shown(value), expected))
 }
 
-/// Several things: any sequence or iterator, but no text.
+/// Several items: any sequence or iterator, but not a text.
 pub(crate) fn items<'py>(name: &str, value: &Bound<'py, PyAny>, expected: &str) -> PyResult<Vec<Bound<'py, PyAny>>> {
     let refused = || wrong(name, shown(value), expected);
     if value.is_instance_of::<pyo3::types::PyString>() {
@@ -117,7 +117,7 @@ pub(crate) fn items<'py>(name: &str, value: &Bound<'py, PyAny>, expected: &str) 
     value.try_iter().map_err(|_| refused())?.collect()
 }
 
-/// A number within a range, which `NaN` is not.
+/// A number within a range, not NaN.
 pub(crate) fn number(name: &str, value: &Bound<'_, PyAny>, range: RangeInclusive<f64>) -> PyResult<f64> {
     match value.extract::<f64>() {
         Ok(number) if range.contains(&number) => plausible(name, number, value.py()).map(|()| number),
@@ -125,7 +125,7 @@ pub(crate) fn number(name: &str, value: &Bound<'_, PyAny>, range: RangeInclusive
     }
 }
 
-/// Refuses an angle beyond a range of radians, of which degrees are the likely cause.
+/// Refuses an angle above a limit in radians, which is probably in degrees.
 pub(crate) fn in_radians(name: &str, given: f64, most: f64) -> PyResult<f64> {
     if given.abs() <= most {
         return Ok(given);
@@ -135,7 +135,7 @@ pub(crate) fn in_radians(name: &str, given: f64, most: f64) -> PyResult<f64> {
     Err(wrong(name, given, expected))
 }
 
-/// Refuses echo times that are all shorter than any sensor can hear, and so in another unit.
+/// Refuses echo times that are all too short for any sensor, and so probably in another unit.
 pub(crate) fn in_microseconds(name: &str, times: impl Iterator<Item = f64>) -> PyResult<()> {
     let most = times.filter(|time| !time.is_nan()).fold(0.0, f64::max);
     // 100 us are 17 mm; an echo of 43 m takes 0.25 s.
@@ -147,7 +147,7 @@ pub(crate) fn in_microseconds(name: &str, times: impl Iterator<Item = f64>) -> P
     Err(wrong(name, format_args!("{most} at most"), format_args!("microseconds, 100 or more; likely {likely}")))
 }
 
-/// A number within a range, or the default where there is none.
+/// A number within a range, or the default if there is none.
 pub(crate) fn number_or(
     name: &str,
     value: Option<&Bound<'_, PyAny>>,
@@ -174,8 +174,8 @@ pub(crate) fn times_of(name: &str, value: &Bound<'_, PyAny>, each: &str) -> PyRe
     Ok(times)
 }
 
-/// An array in order, aligned and of this type: as it is, if it is so, else a copy. Whoever unpickles buffers of their
-/// own may hand over arrays that begin anywhere.
+/// A contiguous, aligned array of this type: the array itself if it is one, otherwise a copy. Unpickled buffers may
+/// begin at any address.
 pub(crate) fn native<'py>(value: &Bound<'py, PyAny>, dtype: Option<&str>) -> PyResult<Bound<'py, PyAny>> {
     value.py().import("numpy")?.call_method1("require", (value, dtype, ["C", "A"]))
 }
@@ -196,7 +196,7 @@ pub(crate) fn matrix<'py>(
     }
 }
 
-/// Points, and their heights if each has one: an array of shape (2,), (3,), (n, 2) or (n, 3), in metres.
+/// Points, with heights if each has one: an array of shape (2,), (3,), (n, 2) or (n, 3), in metres.
 pub(crate) fn points_in_space(
     name: &str,
     value: &Bound<'_, PyAny>,
@@ -209,7 +209,7 @@ pub(crate) fn points_in_space(
     Ok((in_plane(&matrix), (columns == 3).then(heights_m)))
 }
 
-/// A point or several: an array of shape (2,) or (n, 2), in metres.
+/// One point or several: an array of shape (2,) or (n, 2), in metres.
 pub(crate) fn points(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<eeruf_sim::Point>> {
     let array = at_least_2d(name, value, "an array of floats of shape (2,) or (n, 2), in metres")?;
     Ok(in_plane(&matrix(name, &array, 2)?))

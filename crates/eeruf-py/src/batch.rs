@@ -1,4 +1,4 @@
-//! `sim.Batch`: many simulations that go on together, on all cores.
+//! `sim.Batch`: many simulations that advance together, on all cores.
 
 use std::sync::Arc;
 
@@ -17,8 +17,8 @@ use crate::{
     watch::{Background, in_background},
 };
 
-/// Many simulations that go on together on all cores, without the interpreter lock: arrays in, arrays out. For
-/// reinforcement learning and sweeps; of each world the first robot is steered and looked at.
+/// Many simulations that advance together on all cores, without the interpreter lock: arrays in, arrays out. For
+/// reinforcement learning and sweeps; only the first robot of each world is steered and observed.
 ///
 /// A world's steps give the readings of :class:`Simulation`, bit for bit, on any number of threads. A world in which a
 /// sensor or a body goes into something solid stops at the beginning of that step and ``touches``, until :meth:`reset`.
@@ -45,7 +45,7 @@ use crate::{
 pub(crate) struct Batch {
     size: usize,
     sensors: usize,
-    /// The argument, for scenes that come later.
+    /// The method, for scenes that are added later.
     method: Option<Py<PyAny>>,
     worlds: Arc<Exclusive<Vec<Member>>>,
     threads: Arc<Threads>,
@@ -55,13 +55,13 @@ pub(crate) struct Batch {
 struct Member {
     asked: Asked,
     simulation: Simulation,
-    /// The latest of each sensor of the first robot.
+    /// The latest state of each sensor of the first robot.
     known: Vec<Known>,
     /// True once a sensor went into something solid.
     has_crashed: bool,
 }
 
-/// The number of sensors that a batch steers and looks at.
+/// The number of sensors that a batch steers and observes.
 fn sensors_of(asked: &Asked) -> usize {
     asked.world.robots().first().map_or(0, |robot| robot.sensors.len())
 }
@@ -112,7 +112,7 @@ impl Member {
         Some(Self { asked, simulation, known, has_crashed: self.has_crashed })
     }
 
-    /// Pose as (x, y, heading), and whether the disc that holds the sensors touches something.
+    /// Pose as (x, y, heading), and true if the disc that holds the sensors touches something.
     fn robot(&self) -> Result<([f64; 3], bool), SimulationError> {
         let (pose, world) = (self.simulation.moment(0)?.pose, &self.asked.world);
         let radius_m = world.robots().first().map_or(0.0, Robot::radius_m);
@@ -121,7 +121,7 @@ impl Member {
     }
 }
 
-/// The index of a world before what went wrong in it.
+/// Puts the index of a world before its error.
 fn of_world(index: usize) -> impl Fn(SimulationError) -> PyErr {
     move |error| {
         Python::attach(|py| match error.raise() {
@@ -134,7 +134,7 @@ fn of_world(index: usize) -> impl Fn(SimulationError) -> PyErr {
 }
 
 impl Batch {
-    /// The state of all worlds.
+    /// Observes the state of all worlds.
     fn look(worlds: &[Member]) -> PyResult<BatchState> {
         let mut state = BatchState::with_room(worlds.len(), worlds.first().map_or(0, |world| world.known.len()));
         for (index, world) in worlds.iter().enumerate() {
@@ -156,7 +156,7 @@ impl Batch {
         if values.iter().all(|value| (-50.0..=50.0).contains(value)) { Ok(values) } else { Err(refused()) }
     }
 
-    /// Indices of worlds that were named by a mask or by numbers; all without one.
+    /// Indices of worlds given by a mask or by numbers; all if none are given.
     fn chosen(&self, worlds: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<usize>> {
         let Some(worlds) = worlds else { return Ok((0..self.size).collect()) };
         let expected = format!("a mask of {} truth values, or numbers of worlds, each once", self.size);
@@ -255,7 +255,7 @@ impl Batch {
         self.sensors
     }
 
-    /// Let time pass in all worlds, on all cores and without the interpreter lock. Ctrl-C ends it.
+    /// Advance all worlds, on all cores and without the interpreter lock. Ctrl-C ends it.
     ///
     /// Args:
     ///     seconds: how long, 0 to 10^9.
@@ -391,7 +391,7 @@ impl Batch {
         format!("<Batch: {} worlds of {} sensors>", self.size, self.sensors)
     }
 
-    /// A copy goes on alike, on threads of its own.
+    /// A copy continues in the same way, on its own threads.
     fn __copy__(&self, py: Python<'_>) -> PyResult<Self> {
         let copied =
             py.detach(|| Ok::<_, PyErr>(self.worlds.get()?.iter().map(Member::copy).collect::<Option<_>>()))?;
@@ -414,7 +414,7 @@ impl Batch {
     }
 }
 
-/// Poses, one a world.
+/// Poses, one for each world.
 fn poses_of(poses: &Bound<'_, PyAny>, worlds: usize) -> PyResult<Vec<PoseOf>> {
     let poses = matrix("poses", poses, 3)?;
     let rows: Vec<_> = poses.as_array().rows().into_iter().map(|row| (row[0], row[1], row[2])).collect();

@@ -1,4 +1,4 @@
-//! `sim.BatchState`: what the worlds of a batch look like, as arrays.
+//! `sim.BatchState`: the state of a batch's worlds, as arrays.
 
 use numpy::{Element, PyArray1};
 use pyo3::{

@@ -1,10 +1,10 @@
-//! Arrays of results: made on first use, kept, and read-only, so that a loop over them does not copy and what is
-//! written into them is not lost in silence.
+//! Arrays of results: made on first use, kept, and read-only, so that loops over them do not copy, and writing to them
+//! fails instead of being lost.
 
 use numpy::{Element, PyArray1, prelude::*};
 use pyo3::{exceptions::PyMemoryError, prelude::*, sync::PyOnceLock};
 
-/// `N` columns, by their places.
+/// `N` columns, by index.
 pub(crate) struct Columns<const N: usize>([PyOnceLock<Py<PyAny>>; N]);
 
 impl<const N: usize> Default for Columns<N> {
@@ -14,7 +14,7 @@ impl<const N: usize> Default for Columns<N> {
 }
 
 impl<const N: usize> Columns<N> {
-    /// The column at a place, made of these values if this is its first use.
+    /// The column at an index, made from these values on first use.
     pub(crate) fn get<'py, T: Element>(
         &self,
         py: Python<'py>,
@@ -46,7 +46,7 @@ pub(crate) enum Codes {
 }
 
 impl Codes {
-    /// The array, as one that compares with the names.
+    /// The array, as one that can be compared with the names.
     pub(crate) fn name<'py>(self, codes: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let class = if matches!(self, Self::Kinds) { "Kinds" } else { "Causes" };
         codes.call_method1("view", (codes.py().import("eeruf._codes")?.getattr(class)?,))
@@ -63,12 +63,12 @@ pub(crate) fn read_only<T: Element>(
     Ok(of_vec(py, elements))
 }
 
-/// An array of a vector's memory that cannot be written to.
+/// An array over a vector's memory that cannot be written to.
 pub(crate) fn of_vec<T: Element>(py: Python<'_>, elements: Vec<T>) -> Bound<'_, PyAny> {
     PyArray1::from_vec(py, elements).readwrite().make_nonwriteable().as_any().clone()
 }
 
-/// A vector with room for this many, if the memory is there.
+/// A vector with room for this many elements, if there is memory.
 pub(crate) fn room<T>(elements: usize) -> PyResult<Vec<T>> {
     let mut vector = Vec::new();
     let reserved = vector.try_reserve_exact(elements);

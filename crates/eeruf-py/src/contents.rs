@@ -10,7 +10,7 @@ pub(crate) enum Objects {
     World(Arc<World>),
 }
 
-/// The objects, and the buffers of the tracer that was asked last, which are as large as the scene.
+/// The objects, and the buffers of the last tracer, which are as large as the scene.
 pub(crate) struct Contents {
     objects: Objects,
     pub(crate) tracer: Mutex<Tracer>,

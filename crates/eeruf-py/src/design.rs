@@ -20,9 +20,9 @@ use crate::{
 const DESIGN_BUDGET: u64 = 50_000_000;
 /// Budget of nodes for the proof of a certificate.
 const CERTIFICATE_BUDGET: usize = 1_000_000;
-/// Up to this many sensors the engine asks often whether to go on. With more, a good part of a second may lie between
-/// two nodes that ask, so the search gets a thread of its own. A small search would wait for that thread longer than
-/// for its answer.
+/// Number of sensors up to which the engine checks often enough if it must stop. With more sensors there may be a good
+/// part of a second between two checks, so the search runs on its own thread. A small search would wait longer for that
+/// thread than for its answer.
 const FEW_SENSORS: usize = 12;
 
 /// Find the schedule with the shortest period for a ring, and prove that none is shorter.
@@ -128,7 +128,7 @@ pub(crate) fn design<'py>(
     found.into_python(py)
 }
 
-/// Needs by the arguments that all searches have.
+/// Needs from the arguments that all searches share.
 pub(crate) fn asked<'py>(
     py: Python<'py>,
     call: &str,
@@ -141,7 +141,7 @@ pub(crate) fn asked<'py>(
 
 /// Check a certificate: that its schedule keeps the requirements in it, and that no period is below its bound.
 ///
-/// The checker is ``checker/check_period.py``, which shares nothing with the search and which :func:`example` shows;
+/// The checker is ``checker/check_period.py``, which shares nothing with the search; :func:`example` returns its text;
 /// ``docs/reference/certificate.md`` has the format and the proof of each rule. A certificate speaks of the numbers
 /// that stand in it, and of nothing else.
 ///
@@ -176,7 +176,7 @@ pub(crate) fn check_certificate(py: Python<'_>, text: &Bound<'_, PyAny>) -> PyRe
     bound.getattr("numerator")?.floor_div(bound.getattr("denominator")?)?.extract()
 }
 
-/// The module of the checker's text, run on first use: to import eeruf takes no longer for it.
+/// The module of the checker, loaded on first use so that importing eeruf is fast.
 fn checker(py: Python<'_>) -> PyResult<&Bound<'_, PyModule>> {
     static CHECKER: PyOnceLock<Py<PyModule>> = PyOnceLock::new();
     let module = CHECKER.get_or_try_init(py, || {

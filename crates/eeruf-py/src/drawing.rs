@@ -7,7 +7,7 @@ use eeruf_sim::{Faces, Robot, Scene};
 /// Width of the picture, in pixels.
 const WIDTH: f64 = 360.0;
 
-/// Walls, poles, robots and the directions in which their sensors look, from above, y upwards. Openings are dashed.
+/// Walls, poles, robots and the directions of their sensors, from above, with y upwards. Openings are dashed.
 pub(crate) fn svg<'r>(scene: &Scene, robots: impl Iterator<Item = &'r Robot> + Clone) -> String {
     let mut points: Vec<(f64, f64)> = Vec::new();
     points.extend(scene.walls().iter().flat_map(|wall| [(wall.from.x, wall.from.y), (wall.to.x, wall.to.y)]));

@@ -1,5 +1,5 @@
-//! One exception for each enum of errors in Rust, with the same messages. All are `EerufError`s, and that is a
-//! `ValueError`.
+//! One exception for each enum of errors in Rust, with the same messages. All are subclasses of `EerufError`, which is
+//! a `ValueError`.
 
 use std::ffi::CString;
 use std::fmt::Display;
@@ -44,14 +44,14 @@ Example:
 "
 );
 
-/// Warns of something implausible; an error if the user made warnings errors.
+/// Warns about something implausible; an error if the user turned warnings into errors.
 pub(crate) fn warn(py: Python<'_>, message: impl Display) -> PyResult<()> {
     // Reports escape control characters, so that a zero is rare.
     let message = CString::new(message.to_string().replace('\0', "?")).unwrap_or_default();
     PyErr::warn(py, &py.get_type::<EerufWarning>(), &message, 1)
 }
 
-/// Warns of the implausible values of a file.
+/// Warns about the implausible values of a file.
 pub(crate) fn warn_of(py: Python<'_>, file: &Path, text: &str) -> PyResult<()> {
     eeruf_files::doubts_in(text).into_iter().try_for_each(|found| warn(py, found.in_file(file)))
 }
@@ -67,12 +67,12 @@ macro_rules! errors {
     )*};
 }
 
-/// Turns an error of Rust into its exception.
+/// Converts an error of Rust to its exception.
 pub(crate) trait Raise {
     fn raise(self) -> PyErr;
 }
 
-/// An error as code counts, from 0, where the program prints from 1.
+/// An error with sensors counted from 0, as in code, while the program prints them from 1.
 fn from_zero(error: &impl Display) -> String {
     format!("{error:#}")
 }

@@ -6,10 +6,10 @@ use pyo3::PyResult;
 
 use crate::errors::EerufError;
 
-/// The state of an object that works without the interpreter lock, so that two threads may call it at once.
+/// The state of an object that works without the interpreter lock, so that two threads may use it at once.
 pub(crate) struct Exclusive<T> {
     state: Mutex<T>,
-    /// The class.
+    /// The name of the class.
     name: &'static str,
 }
 
@@ -18,7 +18,7 @@ impl<T> Exclusive<T> {
         Self { state: Mutex::new(state), name }
     }
 
-    /// The state, unless another call has it: waiting for that could take for ever.
+    /// The state, unless another call has it: waiting for that call could last forever.
     pub(crate) fn get(&self) -> PyResult<MutexGuard<'_, T>> {
         match self.state.try_lock() {
             Ok(state) => Ok(state),

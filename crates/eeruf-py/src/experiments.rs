@@ -1,5 +1,5 @@
-//! The paper's experiments, and robots of one make. Their tables come as JSON, with the names that `eeruf experiment
-//! --json` uses; what users call is in `python/eeruf/experiments.py`.
+//! The paper's experiments, and Set III. Their tables are JSON, with the names of `eeruf lab experiment --json`; the
+//! functions for users are in `python/eeruf/experiments.py`.
 
 use eeruf_core::Micros;
 use eeruf_design::RoomsAsked;
@@ -35,9 +35,9 @@ use crate::{
     watch::{Background, in_background},
 };
 
-/// As many as the program allows.
+/// Largest number of seeds, as in the program.
 const SEEDS_MOST: u64 = 100_000;
-/// `T_delta` of a robot that does not know how it moves, as in the program.
+/// Default `T_delta` of a robot without odometry, as in the program.
 const WITHOUT_ODOMETRY: Micros = Micros::new(500);
 
 fn json(table: &impl Serialize) -> PyResult<String> {
@@ -109,7 +109,7 @@ struct Merged<F: Serialize, G: Serialize> {
     groups: G,
 }
 
-/// The figures of runs that were made in several calls: of Set I, II or III, as JSON of pairs of names and runs.
+/// The figures of runs from several calls, for Set I, II or III, from JSON of pairs of names and runs.
 #[pyfunction]
 #[pyo3(name = "_figures", signature = (set, runs))]
 pub(crate) fn figures(py: Python<'_>, set: u8, runs: &Bound<'_, PyString>) -> PyResult<String> {
@@ -133,14 +133,14 @@ pub(crate) fn figures(py: Python<'_>, set: u8, runs: &Bound<'_, PyString>) -> Py
     })
 }
 
-/// Difference of a figure between two methods, from its differences scene by scene.
+/// Difference of a figure between two methods, from its differences in each scene.
 #[pyfunction]
 #[pyo3(name = "_difference", signature = (differences))]
 pub(crate) fn difference(py: Python<'_>, differences: Vec<f64>) -> PyResult<Option<String>> {
     py.detach(|| Difference::of(differences).map(|found| json(&found)).transpose())
 }
 
-/// Scenes of the experiments by number, and their sound.
+/// Scenes of the experiments by number, with the largest order and the physics.
 fn numbered(number: &Bound<'_, PyAny>, physics: &Bound<'_, PyAny>) -> PyResult<(u64, Physics)> {
     Ok((whole("first", number, 0..=u64::from(u32::MAX) + SEEDS_MOST)?, surroundings::physics(Some(physics))?))
 }
@@ -189,7 +189,7 @@ pub(crate) fn room(
     scene_of(scene, world.robots().to_vec(), DEFAULT_ORDER, seed, physics)
 }
 
-/// Rooms in which a ring is judged, as Python gives them.
+/// Rooms for judging a ring, as given in Python.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct InRooms<'py> {
@@ -233,7 +233,7 @@ pub(crate) fn recommend(
     })
 }
 
-/// Scenes by their names, as rooms for a ring that stands where their first robot does.
+/// Scenes by name, as rooms for a ring in the place of their first robot.
 fn own_rooms(rooms: &Bound<'_, PyAny>) -> PyResult<Vec<RoomGroup>> {
     let refused = || ArgumentError::new_err(format!("rooms = {}; expected scenes by name, a dict", shown(rooms)));
     let scenes = rooms.cast::<PyDict>().map_err(|_| refused())?;
@@ -260,7 +260,7 @@ fn scene_of(
     Scene::of(WorldParts { scene, robots, noise, physics, max_order, seed, faults }, shown)
 }
 
-/// Arguments of Set II, as Python gives them.
+/// Arguments of Set II, as given in Python.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Asked<'py> {

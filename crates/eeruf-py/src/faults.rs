@@ -1,4 +1,4 @@
-//! `faults` of a scene: dicts of the words of scene files.
+//! `faults` of a scene: dicts with the keys of scene files.
 
 use eeruf_sim::Fault;
 use pyo3::{
@@ -10,7 +10,7 @@ use toml::{Table, Value};
 use crate::arguments::{items, shown, text, wrong};
 use crate::errors::ArgumentError;
 
-/// A value as TOML has it.
+/// A value in TOML's form.
 fn value_of(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Value> {
     let refused = || wrong(name, shown(value), "a number, a text, a list or a dict of these");
     if let Ok(flag) = value.cast::<PyBool>() {
@@ -46,7 +46,7 @@ pub(crate) fn table_of(name: &str, dict: &Bound<'_, PyDict>) -> PyResult<Table> 
     dict.iter().map(pair).collect()
 }
 
-/// The faults that these dicts say.
+/// The faults in these dicts.
 pub(crate) fn faults(value: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<Fault>> {
     let Some(value) = value else { return Ok(vec![]) };
     let expected = "a sequence of dicts, such as {\"kind\": \"cut\", \"sensors\": [2]}";
@@ -83,7 +83,7 @@ pub(crate) fn shown_table<'py>(py: Python<'py>, table: &Table) -> PyResult<Bound
     Ok(dict)
 }
 
-/// Faults as arguments.
+/// Faults in the form of arguments.
 pub(crate) fn shown_faults<'py>(py: Python<'py>, faults: &[Fault]) -> PyResult<Vec<Bound<'py, PyDict>>> {
     faults.iter().map(|fault| shown_table(py, &fault.to_table())).collect()
 }

@@ -1,4 +1,4 @@
-//! Objects by their fields: as dicts of plain values for JSON and data frames, as texts, and as pickles hold them.
+//! Conversion of objects by their fields: to dicts of plain values for JSON and data frames, to text, and for pickles.
 
 use pyo3::{
     call::PyCallArgs,
@@ -7,14 +7,14 @@ use pyo3::{
     types::{PyDict, PyList, PyTuple},
 };
 
-/// An answer: an object of a class of `eeruf._records`, which is made of its fields in their order.
+/// A result: an object of a class of `eeruf._records`, made from its fields in order.
 pub(crate) fn record<'py>(py: Python<'py>, class: &str, fields: impl PyCallArgs<'py>) -> PyResult<Bound<'py, PyAny>> {
     static RECORDS: PyOnceLock<Py<PyModule>> = PyOnceLock::new();
     let records = RECORDS.get_or_try_init(py, || py.import("eeruf._records").map(Bound::unbind))?;
     records.bind(py).getattr(class)?.call1(fields)
 }
 
-/// The fields of a result by their names; results in it become dicts too, and tuples lists.
+/// The fields of a result by name; nested results become dicts too, and tuples lists.
 pub(crate) fn to_dict<'py>(result: &Bound<'py, PyAny>, fields: &[&str]) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(result.py());
     for field in fields {
@@ -31,7 +31,7 @@ fn plain<'py>(value: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
     if value.hasattr("to_dict")? { value.call_method0("to_dict") } else { Ok(value.clone()) }
 }
 
-/// The fields of an object by their names, as they are.
+/// The fields of an object by name, unconverted.
 pub(crate) fn attributes<'py>(object: &Bound<'py, PyAny>, fields: &[&str]) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(object.py());
     for field in fields {
@@ -46,21 +46,21 @@ pub(crate) fn call(name: &str, arguments: &Bound<'_, PyDict>) -> PyResult<String
     Ok(format!("{name}({})", arguments.iter().map(shown).collect::<PyResult<Vec<_>>>()?.join(", ")))
 }
 
-/// The text of an object that its class makes of these fields.
+/// The `repr` of an object that its class can make from these fields.
 pub(crate) fn repr(object: &Bound<'_, PyAny>, fields: &[&str]) -> PyResult<String> {
     call(&object.get_type().name()?.to_cow()?, &attributes(object, fields)?)
 }
 
-/// As a pickle holds an object: what makes it again, and of which arguments.
+/// The pickled form of an object: a function that makes it again, with its arguments.
 pub(crate) type Reduced<'py> = (Bound<'py, PyAny>, Bound<'py, PyTuple>);
 
-/// An object that its class makes of these fields in their order, for a pickle.
+/// The pickled form of an object that its class makes from these fields in order.
 pub(crate) fn reduce<'py>(object: &Bound<'py, PyAny>, fields: &[&str]) -> PyResult<Reduced<'py>> {
     let fields = fields.iter().map(|field| object.getattr(field)).collect::<PyResult<Vec<_>>>()?;
     Ok((object.get_type().into_any(), PyTuple::new(object.py(), fields)?))
 }
 
-/// An object that its class makes of these keyword arguments, for a pickle.
+/// The pickled form of an object that its class makes from these keyword arguments.
 pub(crate) fn reduce_by_name<'py>(object: &Bound<'py, PyAny>, arguments: Bound<'py, PyDict>) -> PyResult<Reduced<'py>> {
     let made = object.py().import("eeruf._rebuild")?.getattr("made")?;
     Ok((made, (object.get_type(), arguments).into_pyobject(object.py())?))

@@ -1,4 +1,4 @@
-//! Python's file objects, read by a thread that never touches Python: it asks the thread that waits for its results.
+//! Python's file objects, for a thread that never calls Python: the thread that waits for its results reads for it.
 
 use std::{
     io::{self, Read, Seek, SeekFrom},
@@ -15,12 +15,12 @@ use pyo3::{
 
 use crate::watch::Watch;
 
-/// At most as many bytes are asked for at once.
+/// Largest number of bytes per read.
 const MOST_BYTES: usize = 1 << 20;
-/// Interval at which Python is asked whether to go on.
+/// Interval at which Python is asked if work must stop.
 const EVERY: Duration = Duration::from_millis(20);
 
-/// A wish of the thread that works to the one that waits.
+/// A request of the working thread to the waiting thread.
 enum Ask<T> {
     Read(usize),
     Seek(SeekFrom),
@@ -33,16 +33,16 @@ enum Answer {
     Place(u64),
 }
 
-/// Work on a thread of its own, from the side of the thread that waits. The work ends early once this is dropped.
+/// Work on a thread of its own, as seen from the waiting thread. Dropping it ends the work early.
 pub(crate) struct Work<T> {
     asks: Receiver<Ask<T>>,
     answers: Sender<Answer>,
     file: Option<Py<PyAny>>,
-    /// Where the file stood when it was given: its beginning, for the work.
+    /// Position of the file when it was given, which the work sees as its beginning.
     base: u64,
 }
 
-/// Where the work hands in results; false once nobody waits for them.
+/// Channel for the work's results; sending returns false once no thread waits.
 pub(crate) struct Results<T>(SyncSender<Ask<T>>);
 
 impl<T> Results<T> {
@@ -51,17 +51,17 @@ impl<T> Results<T> {
     }
 }
 
-/// A file object, from the side of the work.
+/// A file object, as seen from the work.
 pub(crate) struct FileObject<T> {
     asks: SyncSender<Ask<T>>,
     answers: Receiver<Answer>,
     at: u64,
-    /// Bytes that were read and not yet taken.
+    /// Bytes that were read but not used yet.
     rest: io::Cursor<Vec<u8>>,
 }
 
 impl<T: Send + 'static> Work<T> {
-    /// Begins work; the file object, if there is one, is read where it stands.
+    /// Starts work; the file object, if any, is read from its present position.
     pub(crate) fn begin(
         py: Python<'_>,
         file: Option<&Bound<'_, PyAny>>,
@@ -82,8 +82,8 @@ impl<T: Send + 'static> Work<T> {
         Ok(Self { asks, answers: answer, file: file.map(|file| file.clone().unbind()), base })
     }
 
-    /// Waits for the next result, and reads the file for the work meanwhile. An error of the file object is raised as
-    /// it is.
+    /// Waits for the next result, and meanwhile reads the file for the work. An exception of the file object is raised
+    /// unchanged.
     pub(crate) fn next(&mut self, py: Python<'_>) -> PyResult<T> {
         let mut watch = Watch::new(None)?;
         loop {

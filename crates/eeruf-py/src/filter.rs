@@ -49,10 +49,10 @@ pub(crate) struct EchoFilter {
     echoes: usize,
 }
 
-/// Number of rows between two looks for Ctrl-C.
+/// Number of rows between two checks for Ctrl-C.
 const ROWS_A_LOOK: usize = 4096;
 
-/// For sensors that report one echo, which is smaller and faster, or several.
+/// A filter for sensors that report one echo, which is smaller and faster, or several.
 #[derive(Clone)]
 enum Filter {
     One(Box<eeruf_core::EchoFilter<MAX_SENSORS>>),
@@ -92,7 +92,7 @@ impl EchoFilter {
         Ok(Self { filter, sensors, t_delta_us: t_delta.as_micros(), consecutive, echoes })
     }
 
-    /// Take in one firing of a sensor.
+    /// Judge one firing of a sensor.
     ///
     /// Args:
     ///     sensor: which one, from 0.
@@ -126,7 +126,7 @@ impl EchoFilter {
         Ok(Reading::of_filter(sensor, &verdict))
     }
 
-    /// Take in one firing of a sensor that reports several echoes.
+    /// Judge one firing of a sensor that reports several echoes.
     ///
     /// Args:
     ///     sensor: which one, from 0.
@@ -163,7 +163,7 @@ impl EchoFilter {
         Ok(Reading::of_filter(sensor, &verdict))
     }
 
-    /// Take in many firings at once, without the interpreter lock.
+    /// Judge many firings at once, without the interpreter lock.
     ///
     /// Args:
     ///     t_echo_us: array of shape (periods, sensors): echo times in microseconds, rounded to whole ones; NaN for no

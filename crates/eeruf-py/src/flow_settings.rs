@@ -17,7 +17,7 @@ use crate::{
 /// Rest of an HC-SR04 module.
 const REST: Micros = Micros::from_millis(60);
 
-/// Settings that a dict says; the rest follows from how the ring listens.
+/// Settings from a dict; the rest follows from the ring's listening times.
 #[derive(Default)]
 pub(crate) struct FlowSettings {
     least: Option<Micros>,
@@ -29,7 +29,7 @@ pub(crate) struct FlowSettings {
     belief: Option<BeliefSettings>,
 }
 
-/// A setting of the plan that is a time, and one of belief.
+/// A setting of the plan, which is a time, or a setting of belief.
 type Planned = (&'static str, fn(&mut FlowSettings) -> &mut Option<Micros>);
 type Believed = (&'static str, fn(&mut BeliefSettings) -> &mut Micros);
 type Counted = (&'static str, fn(&mut BeliefSettings) -> &mut u8);
@@ -53,18 +53,18 @@ const VOTES: &str = "votes";
 const VOTING: [(&str, Votes); 3] =
     [("by_motion", Votes::ByMotion), ("two_in_a_row", Votes::TwoInARow), ("every_echo", Votes::EveryEcho)];
 
-/// Looks a setting up by its name.
+/// Finds a setting by its name.
 fn named<F: Copy>(fields: &[(&'static str, F)], name: &str) -> Option<F> {
     fields.iter().find(|(known, _)| *known == name).map(|(_, field)| *field)
 }
 
 impl FlowSettings {
-    /// The settings that an argument gives.
+    /// The settings in an argument.
     pub(crate) fn of(value: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
         Self::over(value, BeliefSettings::default())
     }
 
-    /// The settings that an argument gives, over a belief that a ring file says.
+    /// The settings in an argument, which override the belief settings of a ring file.
     pub(crate) fn over(value: Option<&Bound<'_, PyAny>>, file: BeliefSettings) -> PyResult<Self> {
         let mut settings = Self::default();
         let Some(value) = value else { return Ok(settings) };
@@ -108,12 +108,12 @@ impl FlowSettings {
         BeliefSettings { alone: self.alone.unwrap_or(false), ..self.belief.unwrap_or_default() }
     }
 
-    /// Belief of a ring whose file says some of it.
+    /// Belief settings of a ring whose file gives some of them.
     pub(crate) fn belief_over(&self, file: BeliefSettings) -> BeliefSettings {
         BeliefSettings { alone: self.alone.unwrap_or(file.alone), ..self.belief.unwrap_or(file) }
     }
 
-    /// The plan of a ring whose file says the rest.
+    /// The plan of a ring whose file gives the rest.
     pub(crate) fn turns_over(&self, file: TurnSettings) -> TurnSettings {
         let mut turns = TurnSettings { seed: self.drawn_seed(), ..file };
         turns.least = self.least.unwrap_or(turns.least);
@@ -123,12 +123,12 @@ impl FlowSettings {
         turns
     }
 
-    /// The seed of its dice. Robots must not throw alike that are programmed alike.
+    /// The seed of its random gaps. Robots with the same program must not draw the same gaps.
     pub(crate) fn drawn_seed(&self) -> u32 {
         self.seed.unwrap_or_else(|| RandomState::new().hash_one(0) as u32 | 1)
     }
 
-    /// Returns the settings for a method, whose scene says the rest.
+    /// Returns the settings of a method; the scene gives the rest.
     pub(crate) fn options(&self) -> PyResult<FlowOptions> {
         let &Self { least, most, rest, dice, seed, alone, belief } = self;
         let expected = "none for a method: its scene says it";
@@ -143,7 +143,7 @@ impl FlowSettings {
         Ok(options)
     }
 
-    /// When a ring fires whose sensors listen for `window`, and whose sound is heard for `reach` if that is known.
+    /// The turn settings of a ring whose sensors listen for `window`, and whose sound is heard for `reach` if known.
     pub(crate) fn turns(&self, window: Micros, blanking: Micros, reach: Option<Micros>) -> PyResult<TurnSettings> {
         if let (Some(reach), Some(_)) = (reach, self.most) {
             return Err(wrong("reach_us", reach.as_micros(), "none beside the setting most_us, which says the same"));

@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 
 use crate::{fields::record, schedule::Schedule};
 
-/// The answer of a search, before Python sees it.
+/// The result of a search, before conversion to Python.
 #[derive(Default)]
 pub(crate) struct Found {
     schedule: Option<Schedule>,
@@ -43,7 +43,7 @@ impl Found {
         Self { from_atlas: design.from_atlas, certificate, ..Self::of(&found, began, reason) }
     }
 
-    /// As Python sees it.
+    /// The result in Python's form.
     pub(crate) fn into_python(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
         let Self { schedule, value_us, bound_us, proven, nodes, seconds, reason, certificate, from_atlas } = self;
         let fields = (schedule, value_us, bound_us, proven, nodes, seconds, reason, certificate, from_atlas);

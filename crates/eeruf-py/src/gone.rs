@@ -1,8 +1,8 @@
-//! Members of classes that are gone, which answer by name.
+//! Descriptors of removed members, which name their replacement.
 
 use pyo3::{exceptions::PyAttributeError, prelude::*};
 
-/// A descriptor that says what does the work of a member that is gone.
+/// A descriptor of a removed member that names its replacement.
 #[pyclass(frozen, module = "eeruf")]
 pub(crate) struct Gone {
     name: &'static str,

@@ -13,7 +13,7 @@ use crate::{
     readings::Readings,
 };
 
-/// The most metres that a reading is entered over.
+/// Largest range, in metres, over which a reading is entered.
 const FARTHEST_M: f64 = 1e3;
 
 /// A certainty grid that range readings fill and clear while the robot drives: histogramic in-motion mapping

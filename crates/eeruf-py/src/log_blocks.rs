@@ -1,4 +1,4 @@
-//! The ranges of a log, block by block. `python/eeruf/logs.py` is what users see of it.
+//! The ranges of a log, block by block. `python/eeruf/logs.py` is its public form.
 
 use std::path::{Path, PathBuf};
 
@@ -20,7 +20,7 @@ use crate::{
     logs::{Source, out_file, raise, warn_of_each},
 };
 
-/// Readings of a log, and what is known of it after them.
+/// Readings of a log, and the knowledge of the log after them.
 #[derive(Default)]
 struct Block {
     sensor: Vec<i64>,
@@ -32,7 +32,7 @@ struct Block {
     kind: Vec<i8>,
     report: Report,
     counted: Vec<Counted>,
-    /// After the last reading.
+    /// The examination after the last reading.
     examination: Option<Examination>,
 }
 
@@ -113,7 +113,7 @@ struct Blocks {
     doctor: Doctor,
     judging: Option<Judging>,
     results: Results<Result<Block, FileError>>,
-    /// An error was handed in, or nobody waits.
+    /// True if an error was passed on, or no thread waits.
     is_over: bool,
 }
 
@@ -244,7 +244,7 @@ struct Columns<'py> {
     max_range_m: PyReadonlyArray1<'py, f64>,
 }
 
-/// Judges ranges that were read before: the fields that `Judged` has beside theirs.
+/// Judges ranges that were read before: returns the additional fields of `Judged`.
 #[pyfunction]
 #[pyo3(name = "_judge")]
 pub(crate) fn judge<'py>(
@@ -285,17 +285,17 @@ pub(crate) fn judge<'py>(
     Ok(out)
 }
 
-/// More are a slip.
+/// Largest plausible number of sensors.
 const MOST_SENSORS: usize = 1 << 16;
 
-/// Sets what a judge made of readings.
+/// Sets the judge's results.
 fn judged(out: &Bound<'_, PyDict>, kinds: Vec<i8>, counted: &[Counted]) -> PyResult<()> {
     out.set_item("kind", Codes::Kinds.name(&of_vec(out.py(), kinds))?)?;
     out.set_item("gaps", counted.iter().map(|counted| counted.gaps).collect::<Vec<_>>())?;
     out.set_item("backwards", counted.iter().map(|counted| counted.backwards).collect::<Vec<_>>())
 }
 
-/// The options of reading, by their names.
+/// The options for reading, by name.
 fn read_options(given: &Bound<'_, PyDict>) -> PyResult<Options> {
     const NAMES: [&str; 12] = [
         "time",

@@ -1,4 +1,4 @@
-//! Logs of robots: ranges, firings, and what firings say. `python/eeruf/logs.py` is what users see of it.
+//! Logs of robots: ranges, firings, and diagnoses. `python/eeruf/logs.py` is its public form.
 
 use std::path::{Path, PathBuf};
 
@@ -40,7 +40,7 @@ pub(crate) enum Source<'py> {
 }
 
 impl<'py> Source<'py> {
-    /// Python's `_source` makes file objects of what is no path, with their names.
+    /// A path, or a named file object that Python's `_source` makes from anything else.
     pub(crate) fn of(source: &Bound<'py, PyAny>) -> PyResult<Self> {
         if let Ok((object, name)) = source.extract::<(Bound<'py, PyAny>, String)>() {
             return Ok(Self::Object(object, name.into()));
@@ -75,7 +75,7 @@ pub(crate) fn warn_of_each(py: Python<'_>, warnings: Vec<String>) -> PyResult<()
     warnings.into_iter().try_for_each(|warning| warn(py, warning))
 }
 
-/// The columns that all tables of firings have.
+/// The columns common to all tables of firings.
 fn fired<'a, 'py>(
     py: Python<'py>,
     firings: impl ExactSizeIterator<Item = &'a Firing> + Clone,
@@ -113,7 +113,7 @@ pub(crate) fn out_file(out: &Bound<'_, PyAny>) -> PyResult<PathBuf> {
     out.extract().map_err(|_| wrong("out", shown(out), "the path of an MCAP file to write, or None"))
 }
 
-/// Thirty years, so that differences of moments are far from overflow.
+/// Largest time, thirty years, so that differences of moments do not overflow.
 const MOST_US: u64 = 1_000_000_000_000_000;
 
 /// Columns of `eeruf.logs.Firings`.
@@ -133,7 +133,7 @@ fn columns<'py>(firings: &Bound<'py, PyAny>) -> PyResult<Columns<'py>> {
     firings.extract().map_err(|_| wrong("log", shown(firings), expected))
 }
 
-/// A log from columns of equal length; the places of its firings, in their order, among the columns.
+/// A log from columns of equal length, and the places of its firings, in order, in the columns.
 fn log_of(columns: &Columns<'_>) -> PyResult<(FiringLog, Vec<usize>)> {
     let (sensor, fired_us, period) =
         (columns.sensor.as_array(), columns.fired_us.as_array(), columns.period.as_array());
@@ -238,7 +238,7 @@ pub(crate) fn diagnose<'py>(
     Ok(out)
 }
 
-/// Finds from the columns of a measuring run who hears whom.
+/// Finds from the columns of a measuring run which sensors hear each other.
 #[pyfunction]
 #[pyo3(name = "_survey")]
 pub(crate) fn survey<'py>(

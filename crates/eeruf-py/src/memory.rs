@@ -1,10 +1,11 @@
-//! True if there is memory for a result, before it is begun: an interpreter that runs out of it is ended.
+//! A check that a result fits into memory before it is computed, since the system ends an interpreter that runs out of
+//! memory.
 
 use std::fs;
 
 use pyo3::{exceptions::PyMemoryError, prelude::*};
 
-/// Refuses what certainly does not fit into memory, with how much it is and what to do instead.
+/// Refuses a result that certainly does not fit into memory, with its size and an alternative.
 pub(crate) fn check(what: &str, bytes: u64, instead: &str) -> PyResult<()> {
     match available() {
         Some(available) if bytes > available => {
@@ -15,7 +16,7 @@ pub(crate) fn check(what: &str, bytes: u64, instead: &str) -> PyResult<()> {
     }
 }
 
-/// Number of bytes that can still be had, where the system says so: on Linux.
+/// Number of bytes available, if the system reports it, as Linux does.
 fn available() -> Option<u64> {
     let line = |file: &str, key: &str| -> Option<u64> {
         let text = fs::read_to_string(file).ok()?;

@@ -1,5 +1,4 @@
-//! `sim.Method`: a method as a value, with the schedule, the settings and the code that make it another one; and
-//! methods by their names.
+//! `sim.Method`: a method as a value with its own schedule, settings and code; and methods by name.
 
 use std::sync::Arc;
 
@@ -21,7 +20,7 @@ use crate::{
     watch::Background,
 };
 
-/// Budget of nodes for the search for `eeruf_best`, as in the program; it is proven shortest long before.
+/// Budget of nodes for the search for `eeruf_best`, as in the program; the proof usually takes far fewer.
 const BEST_BUDGET: u64 = 300_000;
 
 const EXPECTED: &str = "a name of eeruf.sim.METHODS, or an eeruf.sim.Method";
@@ -184,7 +183,7 @@ impl Method {
     }
 }
 
-/// A method of an argument, with what makes its own code if it has some.
+/// A method from an argument, with the makers of its own code, if any.
 #[derive(Clone)]
 pub(crate) struct Chosen {
     pub(crate) entry: Entry,
@@ -201,7 +200,7 @@ impl Chosen {
         Ok(Self { entry: by_name(argument, value)?, makers: None })
     }
 
-    /// A scene whose robots have what the method changes of them.
+    /// A scene whose robots have the method's changes.
     pub(crate) fn scene<'py>(
         argument: Option<&Bound<'py, PyAny>>,
         scene: &Bound<'py, Scene>,
@@ -230,7 +229,7 @@ impl Chosen {
     }
 }
 
-/// The methods of an argument, or the default.
+/// The methods in an argument, or the default.
 pub(crate) fn methods(values: Option<&Bound<'_, PyAny>>, default: Vec<Entry>) -> PyResult<(Vec<Entry>, Made)> {
     let Some(values) = values else { return Ok((default, Made::default())) };
     let values = items("methods", values, "a sequence of names of eeruf.sim.METHODS and eeruf.sim.Method")?;

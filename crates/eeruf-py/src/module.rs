@@ -1,4 +1,4 @@
-//! Modules as arguments: a name, a dict of what differs from one, or one of these for each sensor.
+//! Modules as arguments: a name, a dict of differences from one, or one of these for each sensor.
 
 use eeruf_sim::modules::{KEYS, Module, Value, find, names};
 use pyo3::{
@@ -50,7 +50,7 @@ pub(crate) fn modules(name: &str, value: &Bound<'_, PyAny>, sensors: usize) -> P
     each.iter().enumerate().map(|(index, value)| module(&format!("{name}[{index}]"), value)).collect()
 }
 
-/// A module as an argument: its name, or a dict of all figures.
+/// A module in the form of an argument: its name, or a dict of all figures.
 pub(crate) fn shown_module<'py>(py: Python<'py>, module: &Module) -> PyResult<Bound<'py, PyAny>> {
     if find(module.name) == Some(module) {
         return Ok(PyString::new(py, module.name).into_any());

@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 
 use crate::arguments::{items, shown, whole, wrong};
 
-/// Expected changes of each sensor's readings, of the argument `expected_change_us`.
+/// Expected changes of each sensor's readings, from the argument `expected_change_us`.
 pub(crate) fn expected_changes(changes: Option<&Bound<'_, PyAny>>, sensors: usize) -> PyResult<Vec<i32>> {
     let Some(changes) = changes else { return Ok(Vec::new()) };
     let name = "expected_change_us";
@@ -23,7 +23,7 @@ pub(crate) fn until(deadline: Instant, now: Instant) -> u32 {
     if now.has_reached(deadline) { 0 } else { deadline.since(now).as_micros() }
 }
 
-/// A moment on a clock that wraps at 2^32 us: larger numbers are what such a clock would show.
+/// A moment on a clock that wraps at 2^32 us; larger numbers are taken modulo that.
 pub(crate) fn instant(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Instant> {
     whole(name, value, 0..=u64::MAX).map(|us| Instant::from_micros(us as u32))
 }

@@ -1,4 +1,4 @@
-//! `Needs`: what a ring asks of its schedule, by the keys of a ring file.
+//! `Needs`: a ring's needs of its schedule, with the keys of a ring file.
 
 use std::hash::{Hash, Hasher};
 use std::path::{Path, PathBuf};
@@ -63,7 +63,7 @@ impl Needs {
         Ok(Self { text, file, ring: Arc::new(ring) })
     }
 
-    /// The needs that a value is, or that are in the ring file of which it is the path.
+    /// The needs in an argument: a `Needs`, or the path of a ring file.
     pub(crate) fn given(value: &Bound<'_, PyAny>) -> PyResult<Option<Self>> {
         if let Ok(needs) = value.cast::<Self>() {
             return Ok(Some(needs.get().clone()));
@@ -133,7 +133,7 @@ impl Needs {
         Self::of_text(path.py(), &file, text)
     }
 
-    /// Write a ring file with the keys that are said.
+    /// Write a ring file with the given keys.
     ///
     /// Example:
     ///     >>> import eeruf

@@ -36,7 +36,7 @@ use crate::{
 #[pyclass(frozen, eq, module = "eeruf.sim")]
 #[derive(Clone, PartialEq)]
 pub(crate) struct FiredReading {
-    /// The ring's own verdict on it, with the paper's filter: its sensor, phase and period too.
+    /// The ring's own verdict, with the paper's filter, and its sensor, phase and period.
     #[pyo3(get)]
     reading: Reading,
     t_echoes_us: Vec<u32>,
@@ -44,7 +44,7 @@ pub(crate) struct FiredReading {
     /// Time when it fired, in seconds.
     #[pyo3(get)]
     fired_s: f64,
-    /// Change of a good reading since the sensor's firing before that odometry expects, in microseconds.
+    /// Change of a good reading, since the sensor's previous firing, that odometry expects, in microseconds.
     #[pyo3(get)]
     expected_change_us: i32,
 }
@@ -87,8 +87,8 @@ impl FiredReading {
         })
     }
 
-    /// The times of its echoes after firing, in microseconds, earliest first: a tuple of one at most, but of up to
-    /// eight under methods of several, such as ``"multi_echo"``.
+    /// The times of its echoes after firing, in microseconds, earliest first: a tuple of at most one, or of up to eight
+    /// with methods for several echoes, such as ``"multi_echo"``.
     #[getter]
     fn t_echoes_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         PyTuple::new(py, &self.t_echoes_us)
@@ -124,11 +124,11 @@ impl FiredReading {
 /// The exception that a callable raised, kept for the caller of the simulation.
 type Raised = Arc<Mutex<Option<PyErr>>>;
 
-/// The callables of a simulation, where the garbage collector finds them, and what one of them has raised.
+/// The callables of a simulation, visible to the garbage collector, and the exception that one of them raised.
 #[derive(Default)]
 pub(crate) struct Calls {
     callables: Vec<Mutex<Option<Py<PyAny>>>>,
-    /// Callables that were arguments of the simulation: whether it fires, its robot, and its place.
+    /// Callables given as arguments of the simulation: true for a firing, the robot, and the index.
     given: Vec<(bool, usize, usize)>,
     raised: Raised,
 }
@@ -137,7 +137,7 @@ fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
     mutex.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Keeps an error for whoever ran it, and says it to the simulator.
+/// Keeps an exception for the caller, and reports it to the simulator.
 fn keep(raised: &Raised, error: PyErr) -> OwnError {
     let said = OwnError::new(error.to_string());
     *locked(raised) = Some(error);
@@ -145,7 +145,7 @@ fn keep(raised: &Raised, error: PyErr) -> OwnError {
 }
 
 impl Calls {
-    /// Calls one of them, and keeps what it raises.
+    /// Calls one of them, and keeps its exception.
     fn call<T>(&self, index: usize, ask: impl FnOnce(&Bound<'_, PyAny>) -> PyResult<T>) -> Result<T, OwnError> {
         Python::attach(|py| {
             let callable = locked(&self.callables[index]).as_ref().map(|callable| callable.clone_ref(py));
@@ -159,7 +159,7 @@ impl Calls {
         locked(&self.raised).take()
     }
 
-    /// True if some of them were arguments of the simulation.
+    /// Returns true if some of them were arguments of the simulation.
     pub(crate) fn is_given(&self) -> bool {
         !self.given.is_empty()
     }
@@ -191,7 +191,7 @@ pub(crate) struct Makers {
 type ByRobot<'py> = Vec<(usize, Bound<'py, PyAny>)>;
 
 impl Makers {
-    /// The arguments `make_firing` and `make_filter` of a method; none if it has neither.
+    /// The arguments `make_firing` and `make_filter` of a method; `None` if it has neither.
     pub(crate) fn of(
         firing: Option<&Bound<'_, PyAny>>,
         filter: Option<&Bound<'_, PyAny>>,
@@ -219,7 +219,7 @@ impl Makers {
         visit.call(&self.filter)
     }
 
-    /// A callable for each robot that has none in `given`.
+    /// Makes a callable for each robot that has none in `given`.
     fn fill<'py>(
         name: &str,
         maker: Option<&Py<PyAny>>,
@@ -251,12 +251,12 @@ impl MakeOwn for Makers {
     }
 }
 
-/// The makers of an experiment's methods, with what their code has raised.
+/// The makers of an experiment's methods, with the exceptions of their code.
 #[derive(Default)]
 pub(crate) struct Made(pub(crate) Vec<Arc<Makers>>);
 
 impl Made {
-    /// The error of the caller's code that ended an experiment, or else the experiment's.
+    /// The exception of the caller's code that ended an experiment, or else the experiment's error.
     pub(crate) fn raise(&self, error: impl Raise) -> PyErr {
         self.0.iter().find_map(|makers| locked(&makers.raised).take()).unwrap_or_else(|| error.raise())
     }
@@ -292,8 +292,8 @@ fn made<'py>(
     Ok((own, calls))
 }
 
-/// The arguments `firing` and `filter` of a simulation of these robots, each a callable for the first one, or a dict of
-/// callables by robot; and for the others those of its method.
+/// The arguments `firing` and `filter` of a simulation of these robots: each is a callable for the first robot, or a
+/// dict of callables by robot. The method provides them for the other robots.
 pub(crate) fn own(
     py: Python<'_>,
     firing: Option<&Bound<'_, PyAny>>,
@@ -305,7 +305,7 @@ pub(crate) fn own(
     made(py, makers, firing, filter, robots)
 }
 
-/// A copy: callables that were arguments are kept, those of the method are made again.
+/// A copy: callables given as arguments are kept, those of the method are made again.
 pub(crate) fn again(
     py: Python<'_>,
     calls: &Calls,
@@ -355,7 +355,7 @@ impl FiringMethod for OwnFiring {
     }
 }
 
-/// The period that a callable has returned.
+/// The period returned by a callable.
 fn period_of(returned: &Bound<'_, PyAny>) -> PyResult<FiringPeriod> {
     let refused = || wrong("what firing returned", shown(returned), PERIOD);
     let parts = returned.cast::<PyTuple>().map_err(|_| refused())?;
@@ -378,7 +378,7 @@ fn period_of(returned: &Bound<'_, PyAny>) -> PyResult<FiringPeriod> {
 struct OwnFilter {
     calls: Arc<Calls>,
     index: usize,
-    /// The last echoes of each sensor, the latest first: what a filter returns may be one of them.
+    /// The last echoes of each sensor, the latest first; a filter may return one of them.
     last: Vec<VecDeque<Echo>>,
 }
 
@@ -419,7 +419,7 @@ impl Filter for OwnFilter {
     }
 }
 
-/// The kind and the time of an echo that a callable has returned.
+/// The kind and the echo time returned by a callable.
 fn kind_and_t_echo(returned: &Bound<'_, PyAny>) -> PyResult<(ReadingKind, Option<Micros>)> {
     if let Ok(reading) = returned.cast::<Reading>() {
         return Ok(reading.get().kind_and_t_echo());

@@ -30,13 +30,13 @@ pub(crate) struct Paths {
     paths: eeruf_sim::Paths,
     ends: Ends,
     contents: Arc<Contents>,
-    /// The `Scene` that was asked.
+    /// The `Scene` in which the paths were found.
     scene: Py<PyAny>,
     limits: Limits,
     columns: Columns<8>,
 }
 
-/// A source and receivers, with their heights, which only a scene that is not flat asks for.
+/// A source and receivers, with their heights, which are used only in a scene that is not flat.
 pub(crate) struct Ends {
     pub(crate) source: Point,
     pub(crate) source_m: f64,
@@ -44,14 +44,13 @@ pub(crate) struct Ends {
     pub(crate) receivers_m: Vec<f64>,
 }
 
-/// Up to this many walls and receivers, and this many bounces, paths are found sooner than a thread would start, and
-/// before anybody could press Ctrl-C.
+/// Numbers of walls and receivers, and of bounces, up to which finding paths is faster than starting a thread.
 const FEW: usize = 32;
 const LOW_ORDER: u32 = 6;
 
 impl Paths {
-    /// Finds all paths within limits under a physics, in the background where that may take long. Frequency and burst
-    /// are those of the first robot's transducers, of a Polaroid 6500 where there is no robot.
+    /// Finds all paths within limits under a physics, in the background if that may take long. Frequency and burst are
+    /// those of the first robot's transducers, or of a Polaroid 6500 if there is no robot.
     pub(crate) fn find(
         scene: &Bound<'_, PyAny>,
         contents: Arc<Contents>,
@@ -144,7 +143,7 @@ impl Paths {
         self.columns.get(py, 6, (0..self.paths.len()).map(|path| self.paths.elevations_rad(path)[0]))
     }
 
-    /// The elevation at which the receiver looks to see it, in radians, upwards positive; 0 in a flat scene: float64.
+    /// The elevation in which the receiver sees it, in radians, upwards positive; 0 in a flat scene: float64.
     #[getter]
     fn arrival_elevation_rad<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.columns.get(py, 7, (0..self.paths.len()).map(|path| self.paths.elevations_rad(path)[1]))
@@ -189,7 +188,7 @@ impl Paths {
         PyArray1::from_vec(py, flat).reshape([corners.len(), 2])
     }
 
-    /// Found again: that is exact, and mostly faster than carrying all of them.
+    /// A pickle finds the paths again, which is exact and mostly faster than storing all of them.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let (py, this) = (slf.py(), slf.get());
         let in_room = this.contents.scene().room().is_some();

@@ -1,14 +1,14 @@
-//! Where a robot is, and how it moves, out of what Python gives.
+//! A robot's pose and motion from Python's arguments.
 
 use eeruf_sim::{Motion, Point, Pose, Vector, world::heading_rad};
 use pyo3::prelude::*;
 
 use crate::arguments::{in_radians, items, number, number_or, points, shown, wrong};
 
-/// (x, y, heading) as Python gives it.
+/// A pose as Python gives it: (x, y, heading).
 pub(crate) type PoseOf = (f64, f64, f64);
 
-/// A heading within two turns: more is likely in degrees.
+/// A heading of at most two turns: a larger one is probably in degrees.
 pub(crate) fn heading(name: &str, given: f64) -> PyResult<f64> {
     in_radians(name, given, 4.0 * core::f64::consts::PI)
 }

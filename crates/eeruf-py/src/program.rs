@@ -10,7 +10,7 @@ use crate::errors::ArgumentError;
 #[cfg(feature = "program")]
 pub(crate) use eeruf::{Recording, examples, run};
 
-/// Stand-in for the program where the package was built without it.
+/// Substitute for the program in packages built without it.
 #[cfg(not(feature = "program"))]
 mod without {
     use std::ffi::OsString;
@@ -18,7 +18,7 @@ mod without {
 
     use eeruf_sim::{Readings, Simulation};
 
-    /// There is none: what would write it is the program's.
+    /// A recording that cannot exist, since only the program writes them.
     pub(crate) enum Recording {}
 
     impl Recording {
@@ -53,7 +53,7 @@ mod without {
 #[cfg(not(feature = "program"))]
 pub(crate) use without::{Recording, examples, run};
 
-/// Runs the program with the words of a command line, the first its own name, and gives its exit code.
+/// Runs the program with the words of a command line, its own name first, and returns its exit code.
 #[pyfunction]
 #[pyo3(name = "_run_program")]
 pub(crate) fn run_program(py: Python<'_>, words: Vec<OsString>) -> u8 {

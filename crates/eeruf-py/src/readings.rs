@@ -136,7 +136,7 @@ impl Readings {
         self.columns.get(py, 7, self.readings.earliest_us.iter().copied())
     }
 
-    /// Reading of the sensor if it were alone in quiet air, in microseconds: float64.
+    /// The reading that the sensor would have had alone in quiet air, in microseconds: float64.
     #[getter]
     fn reference_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.columns.get(py, 8, self.readings.reference_us.iter().copied())
@@ -148,14 +148,14 @@ impl Readings {
         self.columns.codes(py, 9, Codes::Causes, self.readings.cause.iter().map(|&cause| cause as i8))
     }
 
-    /// Along which of ``paths`` the sound came, an index, or -1 for none: int64.
+    /// The index in ``paths`` of the sound's path, or -1 for none: int64.
     #[getter]
     fn path<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let index = |&path: &u32| if path == NO_PATH { -1 } else { i64::from(path) };
         self.columns.get(py, 10, self.readings.path.iter().map(index))
     }
 
-    /// Every path that some reading came along: a dict of arrays of equal length.
+    /// Every path of some reading: a dict of arrays of equal length.
     ///
     /// ``emitter_robot``, ``emitter``, ``receiver_robot``, ``receiver`` count from 0; ``order`` is the number of
     /// bounces; ``length_m``, ``departure_rad`` and ``arrival_rad`` are in metres and radians of the scene; ``walls``
@@ -194,7 +194,7 @@ impl Readings {
         self.columns.get(py, 12, (0..self.readings.len()).map(|reading| self.readings.is_accepted(reading)))
     }
 
-    /// Returns true if what the reading says is wrong, accepted.
+    /// Returns true if the reading, if accepted, would be wrong.
     ///
     /// Args:
     ///     tolerance_us: largest difference from the reference, in microseconds.
@@ -286,7 +286,7 @@ impl Readings {
         slf.py().import("eeruf._frames")?.call_method1("to_polars", (Self::columns(slf)?,))
     }
 
-    /// Readings as an Arrow stream, for whoever takes one: polars, pyarrow, DuckDB and others.
+    /// Readings as an Arrow stream, for polars, pyarrow, DuckDB and others.
     ///
     /// Raises:
     ///     ImportError: polars is not installed.
@@ -298,7 +298,7 @@ impl Readings {
         Self::to_polars(slf)?.call_method1("__arrow_c_stream__", (requested_schema,))
     }
 
-    /// Write everything into one file, from which :meth:`load` makes the same readings.
+    /// Write everything into one file, which :meth:`load` reads again.
     ///
     /// Args:
     ///     file: its path; NumPy's format ``.npz``, compressed.
@@ -383,7 +383,7 @@ impl Readings {
         Ok(Self::new(all))
     }
 
-    /// Make readings of arrays of your own, such as those of a drive, so that they can be summed up and saved.
+    /// Make readings from your own arrays, such as those of a drive, to summarize and save them.
     ///
     /// Args:
     ///     sensor: the sensor of each reading, from 0; others have as many entries.
@@ -442,7 +442,7 @@ impl Readings {
         slf.py().import("eeruf._frames")?.call_method1("to_xarray", (Self::columns(slf)?, about))
     }
 
-    /// Some of the readings: those of a slice, a mask or an array of indices. Duration and sensors stay as they are.
+    /// Some of the readings: those of a slice, a mask or an array of indices. Duration and sensors are unchanged.
     fn __getitem__(&self, key: &Bound<'_, PyAny>) -> PyResult<Self> {
         let refused = || wrong("readings[..]", shown(key), "a slice, a mask of as many bools, or an array of indices");
         let all = key.py().import("numpy")?.call_method1("arange", (self.readings.len(),))?;

@@ -5,7 +5,7 @@ use pyo3::{prelude::*, types::PyTuple};
 
 use crate::fields::record;
 
-/// Findings of `Schedule.verify`, as Python sees them.
+/// Findings of `Schedule.verify`, in Python's form.
 pub(crate) fn report<'py>(py: Python<'py>, found: &Verification<'_, MAX_SENSORS>) -> PyResult<Bound<'py, PyAny>> {
     let violations = found.violations().map(|violation| {
         let (kind, source) = (violation.kind.as_str(), violation.kind.source());

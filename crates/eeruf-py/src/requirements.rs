@@ -1,4 +1,4 @@
-//! Requirements on a schedule: what a caller names one by one, or a `Needs` in their place.
+//! Requirements on a schedule: needs named one by one, or a `Needs`.
 
 use eeruf_core::{Criterion, MAX_SENSORS, Micros, Requirements, SpeedOfSound};
 use eeruf_design::{LayoutKey, LayoutName, OwnedLayout, OwnedUneven, Places, RingSpec};
@@ -10,12 +10,12 @@ use crate::arguments::{choice, flag, items, micros, micros_or, shown, times, who
 use crate::errors::ArgumentError;
 use crate::needs::Needs;
 
-/// Needs of rings whose sensors are all alike, beside those that most calls name first.
+/// Further needs of rings whose sensors are all alike, besides the common ones.
 pub(crate) const ALIKE: [&str; 3] = ["neighbours", "layout", "stale_echo"];
 /// Needs of single sensors and pairs.
 pub(crate) const UNEVEN: [&str; 4] = ["refire_us", "intervals_us", "shared_lines", "together"];
 
-/// A layout by its name, or by its pairs of neighbours; a line where there is none.
+/// A layout by its name, or by its pairs of neighbours; a line by default.
 pub(crate) fn layout(value: Option<&Bound<'_, PyAny>>, neighbours: u8, sensors: usize) -> PyResult<OwnedLayout> {
     let expected = "\"line\", \"ring\", \"blocks\", or pairs of neighbours such as [(0, 1), (1, 2)]";
     let key = |value: &Bound<'_, PyAny>| match value.extract::<String>().as_deref() {
@@ -51,11 +51,11 @@ pub(crate) fn sensors(value: &Bound<'_, PyAny>) -> PyResult<usize> {
     whole("sensors", value, 1..=MAX_SENSORS as u32).map(|sensors| sensors as usize)
 }
 
-/// Needs that a call names, by their names.
+/// The needs in a call, by name.
 pub(crate) struct Asked<'py>(Bound<'py, PyDict>);
 
 impl<'py> Asked<'py> {
-    /// Takes those that have a place of their own in the call, and those of its other keywords that are known.
+    /// Needs from the positional arguments, and from other keywords that are known.
     pub(crate) fn of<const N: usize>(
         py: Python<'py>,
         call: &str,
@@ -82,13 +82,13 @@ impl<'py> Asked<'py> {
         self.0.get_item(name)
     }
 
-    /// One that must be named.
+    /// A need that must be given.
     pub(crate) fn must(&self, name: &str) -> PyResult<Bound<'py, PyAny>> {
         let expected = "t_delta_us, min_interval_us and window_us, or a Needs or a ring file in place of all";
         self.get(name)?.ok_or_else(|| wrong(name, "None", expected))
     }
 
-    /// Refuses those that stand beside a `Needs`, which says them.
+    /// Refuses needs given besides a `Needs`, which already has them.
     pub(crate) fn none(&self, but: &str) -> PyResult<()> {
         for (name, value) in &self.0 {
             if !name.eq(but)? {
@@ -98,7 +98,7 @@ impl<'py> Asked<'py> {
         Ok(())
     }
 
-    /// The ring that a search is asked for: a `Needs`, the path of a ring file, or a number of sensors and these needs.
+    /// The ring of a search: a `Needs`, the path of a ring file, or a number of sensors and these needs.
     pub(crate) fn ring(&self, sensors: &Bound<'py, PyAny>) -> PyResult<RingSpec> {
         if let Some(needs) = Needs::given(sensors)? {
             return self.none("").map(|()| needs.ring().clone());
@@ -111,7 +111,7 @@ impl<'py> Asked<'py> {
         Ok(spec)
     }
 
-    /// The ring that a schedule is checked for; without `t_delta_us` it is the most that the schedule allows.
+    /// The ring for which a schedule is checked; without `t_delta_us` it is the largest that the schedule allows.
     pub(crate) fn ring_of(&self, schedule: &AnySchedule) -> PyResult<RingSpec> {
         let sensors = schedule.sensors();
         let t_delta = self.get("t_delta_us")?;
@@ -139,13 +139,13 @@ impl<'py> Asked<'py> {
         choice("criterion", criterion.as_ref(), &[("exact", Criterion::Exact), ("paper", Criterion::Paper)])
     }
 
-    /// Answers by the requirements that these are on a schedule.
+    /// Calls a function with these requirements on a schedule.
     pub(crate) fn check<T>(&self, schedule: &AnySchedule, answer: impl FnOnce(&Requirements<'_>) -> T) -> PyResult<T> {
         let spec = self.ring_of(schedule)?;
         Ok(answer(&Requirements { criterion: self.criterion()?, ..spec.problem().requirements }))
     }
 
-    /// The ring of these times, each with those of single sensors, if they have their own.
+    /// The ring with these times, one for all sensors or one for each.
     pub(crate) fn spec(
         &self,
         sensors: usize,
@@ -182,8 +182,8 @@ impl<'py> Asked<'py> {
         })
     }
 
-    /// Differences between the sensors, with lists of `t_delta` and window that are empty where all have the same;
-    /// `None` if there are none.
+    /// Differences between the sensors, with empty lists of `t_delta` and window if all are equal; `None` without
+    /// differences.
     fn uneven(&self, sensors: usize, t_delta: Vec<Micros>, window: Vec<Micros>) -> PyResult<Option<OwnedUneven>> {
         let [refire, intervals, lines, together] = UNEVEN.map(|name| self.get(name));
         let (refire, intervals, lines, together) = (refire?, intervals?, lines?, together?);
@@ -204,7 +204,7 @@ impl<'py> Asked<'py> {
     }
 }
 
-/// Items of one type; none where there is no argument.
+/// Items of one type; empty without the argument.
 fn list<T>(name: &str, value: Option<&Bound<'_, PyAny>>, expected: &str) -> PyResult<Vec<T>>
 where
     T: for<'a, 'py> FromPyObject<'a, 'py>,
@@ -214,7 +214,7 @@ where
     items(name, value, expected)?.into_iter().map(item).collect()
 }
 
-/// A time for all sensors, or one for each, of `least` or more; then the largest stands for all.
+/// A time for all sensors, or one for each, at least `least`; the largest then counts for all.
 pub(crate) fn each(name: &str, value: &Bound<'_, PyAny>, least: u32) -> PyResult<(Micros, Vec<Micros>)> {
     if value.hasattr("__iter__")? && value.extract::<i128>().is_err() {
         let list = times(name, value)?;

@@ -1,4 +1,4 @@
-//! `Ring`: by a schedule, or by flow.
+//! `Ring`: a ring with a schedule, or a flow ring.
 
 use std::sync::Arc;
 
@@ -17,10 +17,10 @@ use crate::{
     ring_arguments::FlowNeeds,
 };
 
-/// Plan and filter together, as the firmware runs them: the caller passes the time and gets back what to do.
+/// Plan and judge together, as the firmware runs them: the caller passes the time and gets events back.
 ///
 /// Moments are microseconds on a clock that wraps at 2^32, as on a small microcontroller; larger numbers are taken
-/// modulo that. ``Ring(schedule)`` fires by a schedule and compares two readings; :meth:`flow` gives a ring that fires
+/// modulo that. ``Ring(schedule)`` fires by a schedule and compares two readings; :meth:`flow` makes a ring that fires
 /// one sensor after the other, whenever it is quiet enough.
 ///
 /// Args:
@@ -76,7 +76,7 @@ pub(crate) struct Ring(pub(crate) Exclusive<AnyRing>);
 /// Most echoes of one firing.
 pub(crate) const MAX_ECHOES: usize = 8;
 
-/// A ring that fires by a schedule, whether sensors are alike or not, with up to `E` echoes of a firing.
+/// A ring with a schedule, whose sensors are alike or not, with up to `E` echoes of a firing.
 type TableRing<const E: usize> = eeruf_core::Ring<
     TableFiring<Arc<AnySchedule>, MAX_SENSORS, 2, EachSensor<MAX_SENSORS>>,
     EchoFilter<MAX_SENSORS, E>,
@@ -84,7 +84,7 @@ type TableRing<const E: usize> = eeruf_core::Ring<
     E,
 >;
 
-/// The kinds: by a table or by flow, each with one echo of a firing, which is smaller and faster, or several.
+/// The kinds of rings: with a table or flow, each with one echo of a firing, which is smaller and faster, or several.
 #[derive(Clone)]
 pub(crate) enum Fires {
     Table(Box<TableRing<1>>),
@@ -96,25 +96,25 @@ pub(crate) enum Fires {
 /// Requirements on a ring's schedules.
 #[derive(Clone)]
 pub(crate) enum Promise {
-    /// Nothing: crosstalk that the schedule repeats makes readings ambiguous.
+    /// No requirement: crosstalk that the schedule repeats makes readings ambiguous.
     Nothing,
     /// The waits reject crosstalk at the ring's `t_delta`.
     TDelta,
-    /// Needs of each sensor.
+    /// The needs of each sensor are met.
     EachSensor(Arc<RingSpec>),
 }
 
-/// A ring, what its schedules have to keep, and the state of each of its sensors by its events.
+/// A ring, its requirements on schedules, and the state of each sensor according to the ring's events.
 #[derive(Clone)]
 pub(crate) struct AnyRing {
     pub(crate) fires: Fires,
     promise: Promise,
     pub(crate) watch: SensorWatch<MAX_SENSORS>,
-    /// The instant of the last poll, or of the beginning.
+    /// The instant of the last poll, or of the start.
     pub(crate) now: Instant,
 }
 
-/// Asks the same of whichever ring it is, or does it.
+/// Calls the ring, whichever kind it is.
 macro_rules! each {
     ($fires:expr, |$ring:ident| $call:expr) => {
         match $fires {
@@ -126,7 +126,7 @@ macro_rules! each {
     };
 }
 
-/// Asks something that only a ring by a schedule has, or changes it.
+/// Calls an operation that only a ring with a schedule has.
 macro_rules! table {
     ($any:expr, $what:expr, |$ring:ident| $call:expr) => {
         match &mut $any.fires {
@@ -140,7 +140,7 @@ macro_rules! table {
     };
 }
 
-/// Asks something of a ring, or changes it.
+/// Calls an operation of a ring.
 macro_rules! ask {
     ($any:expr, |$ring:ident| $call:expr) => {
         $crate::ring::each!(&$any.fires, |$ring| $call)
@@ -152,7 +152,7 @@ macro_rules! act {
     };
 }
 
-/// Does something to the sensor that a caller names.
+/// Calls an operation on a sensor that the caller names.
 macro_rules! of_sensor {
     ($this:expr, $sensor:ident, |$ring:ident| $call:expr) => {{
         let mut any = $this.0.get()?;
@@ -171,7 +171,7 @@ fn verify(schedule: &AnySchedule, t_delta: Micros) -> PyResult<()> {
 }
 
 impl Promise {
-    /// The schedule as a ring may fire by it, with the limits of each sensor where it must keep those.
+    /// The schedule in the form for firing, with the limits of each sensor if it must keep those.
     fn keep(&self, schedule: &AnySchedule, t_delta: Micros) -> PyResult<(Arc<AnySchedule>, EachSensor<MAX_SENSORS>)> {
         match self {
             Self::Nothing => Ok((Arc::new(*schedule), EachSensor::NONE)),
@@ -199,7 +199,7 @@ impl AnyRing {
         Self { fires, promise, watch: SensorWatch::new(0, now), now }
     }
 
-    /// A ring that fires by a schedule, which keeps what is promised; so must then all to which it changes.
+    /// A ring with a schedule that keeps what is promised; later schedules must keep it too.
     pub(crate) fn by_schedule(
         schedule: &AnySchedule,
         promise: Promise,
@@ -239,7 +239,7 @@ impl AnyRing {
         ask!(self, |ring| ring.sensors())
     }
 
-    /// The number of one of its sensors.
+    /// The checked number of one of its sensors.
     pub(crate) fn sensor(&self, sensor: &Bound<'_, PyAny>) -> PyResult<u8> {
         // At most 64.
         whole("sensor", sensor, 0..=self.sensors() as u8 - 1)
@@ -269,7 +269,7 @@ impl AnyRing {
         }
     }
 
-    /// Compares with another `t_delta`, at which the schedules of this period and the next must reject crosstalk.
+    /// Sets another `t_delta`, at which the schedules of this period and the next must reject crosstalk.
     pub(crate) fn set_t_delta(&mut self, t_delta: Micros) -> PyResult<()> {
         let schedules =
             table!(self, "t_delta_us", |ring| [ring.plan().table(), ring.plan().next_table()].map(Arc::clone))?;
@@ -279,14 +279,14 @@ impl AnyRing {
         Self::raised(table!(self, "t_delta_us", |ring| ring.set_t_delta(t_delta))?)
     }
 
-    /// The largest P of a sensor, its own `T_delta` where it was not said, of a ring by a schedule.
+    /// The largest P of a sensor, for a ring with a schedule; its own `T_delta` by default.
     pub(crate) fn path_change(&mut self) -> PyResult<Micros> {
         // At most 64 sensors.
         let sensors = 0..self.sensors() as u8;
         table!(self, "path_change_us", |ring| sensors.map(|of| ring.path_change_of(of)).max().unwrap_or_default())
     }
 
-    /// Fires by another schedule when the present period ends.
+    /// Changes the schedule when the present period ends.
     pub(crate) fn change_schedule(&mut self, schedule: &AnySchedule) -> PyResult<()> {
         let sensors = self.schedule()?.sensors();
         if schedule.sensors() != sensors {
@@ -297,7 +297,7 @@ impl AnyRing {
         Self::raised(table!(self, "schedule", |ring| ring.change_to(kept, own_limits))?)
     }
 
-    /// Raises what a change of the ring answers.
+    /// Raises the error of a change, if there is one.
     pub(crate) fn raised<E: Raise>(changed: Result<(), E>) -> PyResult<()> {
         changed.map_err(Raise::raise)
     }

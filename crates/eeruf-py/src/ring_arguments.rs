@@ -1,4 +1,4 @@
-//! Settings that a `Ring` is made with, from Python's arguments.
+//! Settings of a new `Ring`, from Python's arguments.
 
 use eeruf_core::{
     EachSensor, Instant, MAX_SENSORS, Micros, RingConfig,
@@ -15,7 +15,7 @@ use crate::{
     requirements::{self, Asked, each},
 };
 
-/// Limits of sound, as Python gives them.
+/// Limits of sound, as given in Python.
 pub(crate) struct Sound<'a, 'py> {
     pub(crate) path_change_us: Option<&'a Bound<'py, PyAny>>,
     pub(crate) audible_us: Option<&'a Bound<'py, PyAny>>,
@@ -39,23 +39,23 @@ pub(crate) fn config(
     Ok(config)
 }
 
-/// When a ring begins, by default at 0.
+/// Start of a ring, by default 0.
 pub(crate) fn begins(now_us: Option<&Bound<'_, PyAny>>) -> PyResult<Instant> {
     now_us.map_or(Ok(Instant::from_micros(0)), |now| instant("now_us", now))
 }
 
-/// Needs of a ring by flow: its window and what its sensors need of their own, and how far they hear.
+/// Needs of a flow ring: its window, the needs of single sensors, and the reach of sound.
 pub(crate) struct FlowNeeds<'a, 'py> {
     pub(crate) asked: Asked<'py>,
     pub(crate) blanking_us: Option<&'a Bound<'py, PyAny>>,
     pub(crate) reach_us: Option<&'a Bound<'py, PyAny>>,
 }
 
-/// A ring by flow: its sensors, belief, plan and times, and the limits of each sensor where they are not all alike.
+/// The parts of a flow ring: sensors, belief, plan and times, and the limits of each sensor if they are not all alike.
 type FlowRingOf = (usize, BeliefSettings, TurnSettings, RingConfig, EachSensor<MAX_SENSORS>);
 
 impl<'py> FlowNeeds<'_, 'py> {
-    /// Checked, with the gaps of the ring; of a `Needs`, by its modules.
+    /// Checked parts, with the gaps of the ring; for a `Needs`, from its modules.
     pub(crate) fn of(&self, sensors: &Bound<'py, PyAny>, settings: Option<&Bound<'_, PyAny>>) -> PyResult<FlowRingOf> {
         let &Self { ref asked, blanking_us, reach_us } = self;
         let config = |window, blanking| RingConfig::new().with_window(window).with_blanking(blanking);

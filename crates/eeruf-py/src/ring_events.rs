@@ -14,10 +14,10 @@ use crate::{
     fields::{Reduced, reduce, repr, to_dict},
 };
 
-/// Sensors that can be.
+/// Largest number of sensors.
 const SENSORS: RangeInclusive<u8> = 0..=MAX_SENSORS as u8 - 1;
 
-/// The ring is to fire a sensor, now.
+/// Fire this sensor, now.
 ///
 /// Example:
 ///     >>> import eeruf
@@ -96,7 +96,7 @@ pub(crate) struct Reading {
     kind: &'static str,
     /// The time of the echo after firing, in microseconds; None without echo.
     t_echo_us: Option<u32>,
-    /// The echo time it was compared with, in microseconds; None if with nothing.
+    /// The echo time it was compared with, in microseconds; None if there was none.
     previous_us: Option<u32>,
     /// Number of firings since the sensor's last accepted reading: 0 for this one, None if there never was one.
     age: Option<u16>,
@@ -104,12 +104,12 @@ pub(crate) struct Reading {
     phase: Option<u8>,
     /// The period in which the sensor fired, from 0; None from a filter alone.
     period: Option<u32>,
-    /// Reason of an ambiguity: the sensor, from 0, whose sound explains it and the one before, or ``"history"``
-    /// for a firing that is no longer remembered; None for every other kind.
+    /// Reason of an ambiguity: the sensor, from 0, whose sound explains this reading and the one before, or
+    /// ``"history"`` for a firing that is no longer remembered; None for every other kind.
     explained_by: Option<ExplainedBy>,
 }
 
-/// An [`Explanation`] as Python sees it.
+/// An [`Explanation`] in Python's form.
 #[derive(Clone, Copy, PartialEq, Eq, Hash, IntoPyObject)]
 pub(crate) enum ExplainedBy {
     Sensor(u8),
@@ -277,7 +277,7 @@ impl PeriodEnded {
         self.0.max_late.as_micros()
     }
 
-    /// The lateness of all its firings together, in microseconds, at most 65,535.
+    /// The sum of the lateness of all its firings, in microseconds, at most 65,535.
     #[getter]
     fn sum_late_us(&self) -> u32 {
         self.0.sum_late.as_micros()
@@ -329,7 +329,7 @@ fn counted(tally: &Bound<'_, PyAny>) -> PyResult<Tally<u8>> {
     Ok(counted)
 }
 
-/// An event as Python sees it.
+/// An event in Python's form.
 pub(crate) fn to_python<'py>(py: Python<'py>, event: &RingEvent) -> PyResult<Bound<'py, PyAny>> {
     match *event {
         RingEvent::Fire { sensor, phase, due } => {
@@ -340,7 +340,7 @@ pub(crate) fn to_python<'py>(py: Python<'py>, event: &RingEvent) -> PyResult<Bou
     }
 }
 
-/// An event as core sees it, of one that Python was given.
+/// An event in core's form, from Python's.
 pub(crate) fn to_core(name: &str, event: &Bound<'_, PyAny>) -> PyResult<RingEvent> {
     if let Ok(ended) = event.cast::<PeriodEnded>() {
         return Ok(RingEvent::PeriodEnded(ended.get().0));

@@ -99,10 +99,9 @@ impl Ring {
         Self::of(AnyRing::by_schedule(&schedule, Promise::Nothing, config, false, now)?, silence)
     }
 
-    /// A ring by flow: one sensor after the other, with as much quiet around each firing as its readings have needed,
-    /// and a throw of dice in every gap. An echo is accepted if it fits what is believed, or if two in a row agree and
-    /// no firing of the ring explains both. A loop that comes late costs time only.
-    /// ``docs/explanation/flow.md`` says for whom.
+    /// A flow ring: one sensor after the other, with only as much quiet around each firing as its readings need, and a
+    /// random time in every gap. An echo is accepted if it fits the belief, or if two in a row agree and no firing of
+    /// the ring explains both. A late loop costs only time. See ``docs/explanation/flow.md``.
     ///
     /// Args:
     ///     sensors: how many, 1 to 64; or a :class:`Needs`, or the path of a ring file, in place of all needs, with the
@@ -163,8 +162,7 @@ impl Ring {
 
     /// The next event at a time. Call again until there is none, then wait until ``next_deadline_us``.
     ///
-    /// Hand in the echoes you know of before you poll: one that comes after the poll that closed its window is not
-    /// heard.
+    /// Report the echoes you know of before you poll: one that comes after the poll that closed its window is lost.
     ///
     /// Args:
     ///     now_us: the present, 0 or more.
@@ -196,8 +194,8 @@ impl Ring {
         event.map(|event| to_python(py, &event)).transpose()
     }
 
-    /// Say how fast the robot moves and turns, for a ring by flow: once a control cycle, also that it stands. By so
-    /// much more may good readings change. After half a second without a word ``top_speed_m_s`` holds again.
+    /// Report how fast the robot moves and turns, to a flow ring, once a control cycle and also while it stands. Good
+    /// readings may then change by as much more. After half a second without a report ``top_speed_m_s`` is assumed.
     ///
     /// Args:
     ///     speed_m_s: in m/s, up to 100 in either direction.
@@ -229,7 +227,7 @@ impl Ring {
         Ok(())
     }
 
-    /// Time hopping is gone.
+    /// Time hopping was removed.
     fn __copy__(&self) -> PyResult<Self> {
         Ok(Self(Exclusive::new("Ring", self.0.get()?.clone())))
     }
@@ -255,8 +253,8 @@ impl Ring {
 
     /// Time to wait before polling next, in microseconds: 0 if an event is pending.
     ///
-    /// This is right across the wrap of the clock at 2^32, where ``next_deadline_us`` and a ``now_us`` that goes on
-    /// growing no longer compare.
+    /// It is correct across the wrap of the clock at 2^32, where ``next_deadline_us`` and a growing ``now_us`` cannot
+    /// be compared.
     ///
     /// Args:
     ///     now_us: the present, 0 or more.
@@ -316,7 +314,7 @@ impl Ring {
         self.0.get()?.set_t_delta(t_delta)
     }
 
-    /// ``T_wind``, in microseconds. It can be changed while the ring runs, also for firings that are under way.
+    /// ``T_wind``, in microseconds. It can be changed while the ring runs, even for firings in progress.
     #[getter]
     fn window_us(&self) -> PyResult<u32> {
         Ok(ask!(self.0.get()?, |ring| ring.window()).as_micros())
@@ -328,7 +326,7 @@ impl Ring {
         AnyRing::raised(act!(self.0.get()?, |ring| ring.set_window(window)))
     }
 
-    /// Time for which after firing edges are no echoes, in microseconds. It can be changed while the ring runs.
+    /// Time after a firing during which edges are not echoes, in microseconds. It can be changed while the ring runs.
     #[getter]
     fn blanking_us(&self) -> PyResult<u32> {
         Ok(ask!(self.0.get()?, |ring| ring.blanking()).as_micros())
@@ -340,8 +338,8 @@ impl Ring {
         AnyRing::raised(act!(self.0.get()?, |ring| ring.set_blanking(blanking)))
     }
 
-    /// P, the largest change of a foreign sound's path from one reading to the next, in microseconds, of a ring by a
-    /// schedule. It can be changed while the ring runs: as the robot's speed changes, for example.
+    /// P, the largest change of a foreign sound's path from one reading to the next, in microseconds, for a ring with a
+    /// schedule. It can be changed while the ring runs, for example when the robot's speed changes.
     #[getter]
     fn path_change_us(&self) -> PyResult<u32> {
         Ok(self.0.get()?.path_change()?.as_micros())
@@ -353,7 +351,8 @@ impl Ring {
         AnyRing::raised(table!(any, "path_change_us", |ring| ring.set_path_change(change))?)
     }
 
-    /// R, how long sound is audible, in microseconds, of a ring by a schedule. It can be changed while the ring runs.
+    /// R, how long sound is audible, in microseconds, for a ring with a schedule. It can be changed while the ring
+    /// runs.
     #[getter]
     fn audible_us(&self) -> PyResult<u32> {
         table!(self.0.get()?, "audible_us", |ring| ring.audible().as_micros())
@@ -366,7 +365,7 @@ impl Ring {
     }
 
     /// Earliest time after its firing at which a reading without an echo is emitted, in microseconds: for modules that
-    /// report by a bus or a pulse's width after their window has closed. 0: when it closes.
+    /// report over a bus or by a pulse's width after their window has closed. 0 for when it closes.
     #[getter]
     fn report_after_us(&self) -> PyResult<u32> {
         Ok(ask!(self.0.get()?, |ring| ring.report_after()).as_micros())
@@ -380,9 +379,9 @@ impl Ring {
 
     /// The firings to come, up to the end of the next period: for hardware that fires by itself.
     ///
-    /// They hold until one is late, or the ring is changed. The loop may then come late: for each firing poll at its
-    /// instant until there is no event, so that ``Fire`` says what is done already; hand in echoes; last poll at the
-    /// present.
+    /// They are valid until one is late or the ring is changed. The loop may then be late: for each firing poll at its
+    /// instant until there is no event, so that ``Fire`` reports a firing that is done; report echoes; finally poll at
+    /// the present.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -399,7 +398,7 @@ impl Ring {
         Ok(self.0.get()?.sensors())
     }
 
-    /// An edge on the echo line of a sensor. Edges may come in any order, at any time, wanted or not.
+    /// Report an edge on the echo line of a sensor. Edges may come in any order and at any time.
     ///
     /// Args:
     ///     sensor: which one, from 0.
@@ -421,9 +420,9 @@ impl Ring {
         AnyRing::raised(act!(self.0.get()?, |ring| ring.echo(sensor, at)))
     }
 
-    /// An edge like that of :meth:`echo`, known only to lie between two times: the line was last seen without it at
-    /// one, and with it at the other. The middle counts, and foreign sound at any time in between explains the reading;
-    /// more than 300 us, 5 cm, say too little, and the reading is ``"late"``.
+    /// Report an edge like :meth:`echo` that is known only to lie between two times: the line was last seen without it
+    /// at one, and with it at the other. The middle counts, and foreign sound at any time in between explains the
+    /// reading. If it may be off by more than 300 us (5 cm), the reading is ``"late"``.
     ///
     /// Args:
     ///     sensor: which one, from 0.
@@ -453,8 +452,8 @@ impl Ring {
         AnyRing::raised(act!(self.0.get()?, |ring| ring.echo_between(sensor, earliest, latest)))
     }
 
-    /// Corrects when a sensor last fired: by what a timer captured, for example. Optional: echo times count from then,
-    /// and if it is later than the poll, all later firings move by as much.
+    /// Correct the time when a sensor last fired, for example to one that a timer captured. Optional: echo times count
+    /// from then, and if it is later than the poll, all later firings move by as much.
     ///
     /// Args:
     ///     sensor: which one, from 0.
@@ -476,7 +475,8 @@ impl Ring {
         AnyRing::raised(act!(self.0.get()?, |ring| ring.fired(sensor, at)))
     }
 
-    /// The echo line of a sensor was already high when it was to fire: the firing just emitted counts as ``"stuck"``.
+    /// Report that the echo line of a sensor was already high when it was to fire: the firing just emitted counts as
+    /// ``"stuck"``.
     ///
     /// Args:
     ///     sensor: which one, from 0.
@@ -518,8 +518,8 @@ impl Ring {
         State::of(&ring.watch, ring.sensor(sensor)?, ring.now).into_python(sensor.py())
     }
 
-    /// Hand in what hardware or a protocol measured of a sensor's last firing, before its reading is emitted: see
-    /// ``report_after_us``.
+    /// Report the result of a sensor's last firing that hardware or a protocol measured, before its reading is emitted:
+    /// see ``report_after_us``.
     ///
     /// Args:
     ///     sensor: which one, from 0.
@@ -541,7 +541,8 @@ impl Ring {
         of_sensor!(self, sensor, |ring| ring.measured(sensor, t_echo))
     }
 
-    /// A sensor has shown that it listens for the echo of its last firing, such as by a line that rises.
+    /// Report that a sensor has shown that it listens for the echo of its last firing, for instance by a line that
+    /// rises.
     ///
     /// Args:
     ///     sensor: which one, from 0.
@@ -568,8 +569,7 @@ impl Ring {
         }))
     }
 
-    /// Forget what is known of a sensor's echo, so that its next reading is compared with nothing: the last one was not
-    /// what it seemed.
+    /// Forget a sensor's echo, so that its next reading is compared with nothing, if the last one was false.
     ///
     /// Args:
     ///     sensor: which one, from 0.
@@ -585,7 +585,7 @@ impl Ring {
         of_sensor!(self, sensor, |ring| ring.forget(sensor))
     }
 
-    /// Stop a sensor from firing. The reading of a firing that is under way is still emitted.
+    /// Stop a sensor from firing. The reading of a firing in progress is still emitted.
     ///
     /// Args:
     ///     sensor: which one, from 0.
@@ -603,7 +603,7 @@ impl Ring {
         of_sensor!(self, sensor, |ring| ring.disable(sensor))
     }
 
-    /// Let a sensor fire again, from its next turn on. Its readings from before are forgotten.
+    /// Let a sensor fire again, from its next turn on. Its earlier readings are forgotten.
     ///
     /// Args:
     ///     sensor: which one, from 0.
@@ -640,7 +640,7 @@ impl Ring {
         Ok(ask!(self.0.get()?, |ring| ring.is_enabled(sensor)))
     }
 
-    /// Let no sensor fire until :meth:`resume`. Readings of firings under way are still emitted, and periods go on.
+    /// Let no sensor fire until :meth:`resume`. Readings of firings in progress are still emitted, and periods go on.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -653,7 +653,7 @@ impl Ring {
         Ok(())
     }
 
-    /// Let sensors fire again, as of the next period. Readings from before are forgotten.
+    /// Let sensors fire again from the next period on. Earlier readings are forgotten.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -668,8 +668,8 @@ impl Ring {
         Ok(())
     }
 
-    /// Start again with phase a at a time, or as soon as the last firings allow: after a long sleep. Firings under way
-    /// are dropped, and readings from before are forgotten.
+    /// Start again with phase a at a time, or as soon as the last firings allow: after a long sleep. Firings in
+    /// progress are dropped, and earlier readings are forgotten.
     ///
     /// Args:
     ///     now_us: the present, 0 or more.

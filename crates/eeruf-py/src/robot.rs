@@ -103,7 +103,7 @@ pub(crate) struct Robot {
 }
 
 impl Robot {
-    /// One that a file describes.
+    /// A robot that a file describes.
     pub(crate) fn of(robot: &eeruf_sim::Robot) -> Self {
         Self {
             pose: from_pose(&robot.pose),
@@ -150,7 +150,7 @@ impl Robot {
 }
 
 impl Robot {
-    /// A limit of each sensor, where they have their own.
+    /// A limit of each sensor, if they have their own.
     fn limits(&self, of: fn(&SensorLimits) -> Micros) -> Option<Vec<Micros>> {
         (!self.robot.limits.is_empty()).then(|| self.robot.limits.iter().map(of).collect())
     }
@@ -168,7 +168,7 @@ fn heights(value: &Bound<'_, PyAny>, sensors: usize) -> PyResult<Vec<f64>> {
     each.iter().map(|height_m| number("height_m", height_m, 0.0..=1e3)).collect()
 }
 
-/// Firing by sketches and modules.
+/// The settings of firing by sketches and modules.
 pub(crate) fn sketch(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Sketch> {
     let refused = |_| wrong(name, shown(value), "a dict with keys of [firing], such as {\"turn_us\": 33_000}");
     let table = table_of(name, value.cast::<PyDict>().map_err(refused)?)?;
@@ -185,7 +185,7 @@ fn refused_ring(message: &str) -> PyErr {
     ArgumentError::new_err(format!("ring: {message}"))
 }
 
-/// A time for each of this many sensors, and whether they were given one by one.
+/// A time for each of this many sensors, and true if they were given one by one.
 fn each_micros(name: &str, value: &Bound<'_, PyAny>, sensors: usize) -> PyResult<(Vec<Micros>, bool)> {
     if value.is_instance_of::<PyString>() || value.try_iter().is_err() {
         return Ok((vec![micros(name, value)?; sensors], false));
@@ -205,7 +205,7 @@ fn shown_micros<'py>(py: Python<'py>, one: Micros, each: Option<Vec<Micros>>) ->
     }
 }
 
-/// The arguments of the two ways to move.
+/// The arguments of the two kinds of motion.
 const TURNS: [&str; 2] = ["velocity_m_s", "turn_rad_s"];
 const DRIVES: [&str; 2] = ["waypoints_m", "speed_m_s"];
 
@@ -467,7 +467,7 @@ impl Robot {
         self.robot.together.iter().map(members).collect()
     }
 
-    /// Growth of the receiver's gain while it listens; the first sensor's where they differ.
+    /// Growth of the receiver's gain while it listens; if sensors differ, the first one's.
     #[getter]
     fn gain(&self) -> &'static str {
         self.robot.transducer.gain.name()
@@ -479,8 +479,8 @@ impl Robot {
         self.robot.transducer.beam.name()
     }
 
-    /// The level of the sound that the mounting carries straight from sensor to sensor, in dB; None for what the
-    /// patterns say.
+    /// The level of the sound that the mounting carries directly from sensor to sensor, in dB; None if the patterns
+    /// decide.
     #[getter]
     fn coupling_db(&self) -> Option<f64> {
         self.robot.coupling_db
@@ -504,19 +504,19 @@ impl Robot {
         self.robot.period.as_micros()
     }
 
-    /// ``T_delta``, in microseconds; a list of one for each sensor where they have their own.
+    /// ``T_delta``, in microseconds; a list with one for each sensor if they have their own.
     #[getter]
     fn t_delta_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         shown_micros(py, self.robot.t_delta, self.limits(|limits| limits.t_delta))
     }
 
-    /// Listening time of a sensor, in microseconds; a list of one for each sensor where they have their own.
+    /// Listening time of a sensor, in microseconds; a list with one for each sensor if they have their own.
     #[getter]
     fn window_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         shown_micros(py, self.robot.window, self.limits(|limits| limits.window))
     }
 
-    /// Deaf time of a sensor after it has fired, in microseconds; a list of one for each sensor where they differ.
+    /// Deaf time of a sensor after it has fired, in microseconds; a list with one for each sensor if they differ.
     #[getter]
     fn blanking_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         let each = Some(self.robot.blankings.clone()).filter(|each| !each.is_empty());
@@ -529,7 +529,7 @@ impl Robot {
         self.robot.min_refire.as_micros()
     }
 
-    /// Time for which sound is heard after it was sent, in microseconds; 0 for as long as sensors listen.
+    /// Time for which sound is heard after it was sent, in microseconds; 0 for the listening time.
     #[getter]
     fn audible_us(&self) -> u32 {
         self.robot.audible.as_micros()
@@ -541,7 +541,7 @@ impl Robot {
         self.robot.path_change.map(Micros::as_micros)
     }
 
-    /// Firing by sketches and modules: a dict of what differs from the default.
+    /// Firing by sketches and modules: a dict of differences from the default.
     #[getter]
     fn firing<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         shown_table(py, &self.robot.firing.to_table())
@@ -571,13 +571,13 @@ impl Robot {
         self.robot.consecutive
     }
 
-    /// Returns true if the ring knows by how much its own motion should change readings.
+    /// Returns true if the ring knows the change of readings that its own motion should cause.
     #[getter]
     fn odometry(&self) -> bool {
         self.robot.odometry
     }
 
-    /// The velocity that it keeps, (x, y) in m/s; None for a robot that stands or drives through waypoints.
+    /// The constant velocity, (x, y) in m/s; None for a robot that stands or drives through waypoints.
     #[getter]
     fn velocity_m_s(&self) -> Option<(f64, f64)> {
         match &self.robot.motion {
@@ -586,7 +586,7 @@ impl Robot {
         }
     }
 
-    /// The rate of turn that it keeps, in rad/s; None for a robot that stands or drives through waypoints.
+    /// The constant rate of turn, in rad/s; None for a robot that stands or drives through waypoints.
     #[getter]
     fn turn_rad_s(&self) -> Option<f64> {
         match &self.robot.motion {
@@ -634,13 +634,13 @@ impl Robot {
     }
 }
 
-/// Returns true if the change of `sensors` is one of places, not of their number.
+/// Returns true if a change of `sensors` is one of places, not of their number.
 fn changes_places(changes: Option<&Bound<'_, PyDict>>) -> PyResult<bool> {
     let sensors = changes.map(|changes| changes.get_item("sensors")).transpose()?.flatten();
     Ok(sensors.is_some_and(|sensors| sensors.try_iter().is_ok()))
 }
 
-/// Forgives that an argument was missing.
+/// Ignores the error of a missing argument.
 fn missing(error: PyErr) -> PyResult<()> {
     Python::attach(|py| if error.is_instance_of::<pyo3::exceptions::PyKeyError>(py) { Ok(()) } else { Err(error) })
 }

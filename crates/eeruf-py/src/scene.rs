@@ -28,7 +28,7 @@ use crate::{
 
 /// Walls, poles and robots from above, in metres. Immutable; scenes pickle.
 ///
-/// A wall reflects on its left side, seen from its first end to its second, and its back swallows: a room is a loop
+/// A wall reflects on its left side, seen from its first end to its second, and its back absorbs: a room is a loop
 /// walked counter-clockwise, a pillar one walked clockwise.
 ///
 /// Args:
@@ -248,7 +248,7 @@ impl Scene {
         Self::from_text(&path, &text)
     }
 
-    /// A scene out of the text of a scene file, as :meth:`to_toml` writes it.
+    /// A scene from the text of a scene file, as :meth:`to_toml` writes it.
     ///
     /// Args:
     ///     text: the contents of a file; a schedule that it names is looked for in the present folder.
@@ -268,7 +268,7 @@ impl Scene {
         Self::from_text(Path::new("text"), &text)
     }
 
-    /// Write a scene file that says all this: it gives the same readings, in Python and in the program.
+    /// Write a scene file of this scene: it gives the same readings, in Python and in the program.
     ///
     /// Example:
     ///     >>> from eeruf import sim
@@ -403,9 +403,9 @@ impl Scene {
 
     /// Every path from a source to some receivers, exactly, without the interpreter lock. Ctrl-C ends it.
     ///
-    /// The paths are those that :func:`simulate` knows: under the scene's ``physics`` nothing runs through a thick
-    /// pole, edges diffract, and narrow walls return less. With ``physics="plain"`` they are the specular ones alone.
-    /// Amplitudes are for the first robot's transducers, or for a Polaroid 6500 where there is no robot.
+    /// The paths are those that :func:`simulate` uses: with the scene's ``physics`` no path runs through a thick pole,
+    /// edges diffract, and narrow walls reflect less. With ``physics="plain"`` they are only the specular ones.
+    /// Amplitudes are for the first robot's transducers, or for a Polaroid 6500 if there is no robot.
     ///
     /// Args:
     ///     source: (x, y) in metres, or (x, y, height) in a scene that is not flat; 0.3 m high unless it says so.

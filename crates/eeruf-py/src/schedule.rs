@@ -58,7 +58,7 @@ impl Schedule {
         PyTuple::new(py, (0..self.0.sensors()).map(fire))
     }
 
-    /// Needs that it is checked for.
+    /// The needs for which it is checked.
     fn asked<'py>(
         py: Python<'py>,
         call: &str,
@@ -70,7 +70,7 @@ impl Schedule {
         Asked::of(py, call, placed, needs, &[&["criterion", "window_us"], &ALIKE, more])
     }
 
-    /// Reads a text, of a file or of none.
+    /// Reads a text, from a file or not.
     fn of_text(py: Python<'_>, file: &Path, text: &str) -> PyResult<Self> {
         let schedule = build(text, |file: ScheduleFile| file.schedule());
         let schedule = schedule.map_err(|error| ScheduleError::new_err(error.in_file(file).to_string()))?;
@@ -94,7 +94,7 @@ impl Schedule {
         AnySchedule::from_slices(period, &lag, [&a, &b]).map(Self).map_err(Raise::raise)
     }
 
-    /// Make a schedule of firing times instead of lags and waits.
+    /// Make a schedule from firing times instead of lags and waits.
     ///
     /// Args:
     ///     period_us: the period, ``T_p``.
@@ -120,7 +120,7 @@ impl Schedule {
         AnySchedule::from_slices(period, &vec![Micros::ZERO; a.len()], [&a, &b]).map(Self).map_err(Raise::raise)
     }
 
-    /// Time hopping is gone.
+    /// Time hopping was removed.
     #[classattr]
     fn congruence() -> Gone {
         Gone::new("Schedule.congruence", "Ring.flow")
@@ -208,7 +208,7 @@ impl Schedule {
         self.0.sensors()
     }
 
-    /// ``T_lag`` of each sensor, in microseconds; zeros if the schedule was made of firing times.
+    /// ``T_lag`` of each sensor, in microseconds; zeros if the schedule was made from firing times.
     #[getter]
     fn t_lag_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         tuple(py, self.0.t_lag())
@@ -359,7 +359,7 @@ impl Schedule {
         asked.check(&self.0, |needs| self.0.to_rust(needs))
     }
 
-    /// Write a C99 header with the firing times and what they were verified for.
+    /// Write a C99 header with the firing times and the requirements that they were verified for.
     ///
     /// Args:
     ///     t_delta_us: what the header says it was verified for; by default the most that the schedule allows.
@@ -391,7 +391,7 @@ impl Schedule {
         asked.check(&self.0, |needs| self.0.to_c(needs))
     }
 
-    /// The times by their names, as the arguments of ``Schedule``: a dict of plain values.
+    /// The times by name, like the arguments of ``Schedule``: a dict of plain values.
     ///
     /// Example:
     ///     >>> from eeruf import Schedule, tables

@@ -1,4 +1,4 @@
-//! `WaitSearch`: the waits for given lags, and all tables of them one after the other.
+//! `WaitSearch`: the waits for given lags, and an iterator over all tables.
 
 use std::time::Instant;
 
@@ -18,7 +18,7 @@ use crate::{
     watch::{Watch, control_flow},
 };
 
-/// Number of nodes of the search for waits between two looks at the clock.
+/// Number of nodes of the search for waits between two checks of the clock.
 const POLL: u32 = 1 << 12;
 
 /// The paper's question: lags are given, waits are sought on a grid so that crosstalk never repeats (Sec. 3.1).
@@ -131,7 +131,7 @@ impl WaitSearch {
         Ok(if let Outcome::Found(table) = first { Some(Schedule(table)) } else { None })
     }
 
-    /// Number of tables, however many: counted without listing them where that is possible. Ctrl-C ends the search.
+    /// Number of tables, counted without listing them if possible. Ctrl-C ends the search.
     ///
     /// Args:
     ///     limit: where to stop counting, 1 or more; None counts all.
@@ -214,8 +214,8 @@ impl WaitSearch {
         Found::of(&found, began, None).into_python(py)
     }
 
-    /// The tables of which no other has a larger smallest interval without a smaller ``T_delta``, both at least what is
-    /// asked for: from the largest interval to the largest ``T_delta``. Ctrl-C ends the search.
+    /// The Pareto front: tables that no other beats in smallest interval or ``T_delta`` without losing in the other,
+    /// both at least the given needs, from the largest interval to the largest ``T_delta``. Ctrl-C ends the search.
     ///
     /// Returns:
     ///     Triples of table, smallest interval and ``T_delta``, in microseconds; ``T_delta`` is None if two readings of
@@ -245,7 +245,7 @@ impl WaitSearch {
     }
 }
 
-/// The question, and the last table that was given.
+/// The problem, and the last table that was returned.
 struct Walk {
     search: search::WaitSearch,
     last: Option<eeruf_core::Schedule<MAX_SENSORS>>,

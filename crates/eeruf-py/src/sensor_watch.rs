@@ -1,4 +1,4 @@
-//! `SensorWatch`: what is known of the space before each sensor, and which sensors are blind.
+//! `SensorWatch`: the known state of the space before each sensor, and blind sensors.
 
 use eeruf_core::{
     Instant, MAX_SENSORS, Micros,
@@ -15,8 +15,8 @@ use crate::{
     ring_events::{ExplainedBy, to_core},
 };
 
-/// Watches the events of a ring: what is known of the space before each sensor now, and which
-/// sensors hear echoes none of which is accepted.
+/// Watches the events of a ring for the state of the space before each sensor, and for sensors whose echoes are never
+/// accepted.
 ///
 /// Args:
 ///     sensors: how many, 1 to 64.
@@ -72,7 +72,7 @@ impl SensorWatch {
         self.sensors
     }
 
-    /// Take in what a poll returned. Observe every event, or at least readings and the ends of periods.
+    /// Read an event that a poll returned. Observe every event, or at least readings and the ends of periods.
     ///
     /// Args:
     ///     event: of ``Ring.poll``.
@@ -134,7 +134,7 @@ impl SensorWatch {
     }
 }
 
-/// The state of the space before a sensor, before Python sees it.
+/// The state of the space before a sensor, before conversion to Python.
 pub(crate) struct State {
     kind: &'static str,
     t_echo_us: Option<u32>,
@@ -147,7 +147,7 @@ const KINDS: [&str; 5] = ["obstacle", "clear", "too_close", "unanswered", "unkno
 const WHYS: [&str; 5] = ["no_firing", "unsure", "rejected", "ambiguous", "no_witness"];
 
 impl State {
-    /// For a sensor that is there.
+    /// The state before a sensor that exists.
     pub(crate) fn of(watch: &eeruf_core::watch::SensorWatch<MAX_SENSORS>, sensor: u8, now: Instant) -> Self {
         let [obstacle, clear, too_close, unanswered, unknown] = KINDS;
         let known =
@@ -173,7 +173,7 @@ impl State {
         }
     }
 
-    /// As Python sees it.
+    /// The state in Python's form.
     pub(crate) fn into_python(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
         let Self { kind, t_echo_us, age_us, why, explained_by } = self;
         record(py, "State", (kind, t_echo_us, age_us, why, explained_by))

@@ -64,7 +64,7 @@ pub(crate) fn simulate(
     })
 }
 
-/// The arguments of [`simulate`] and its like.
+/// The arguments of [`simulate`] and similar functions.
 #[derive(Clone)]
 pub(crate) struct Asked {
     pub(crate) world: Arc<World>,
@@ -90,7 +90,7 @@ impl Asked {
         Ok(Self { world, chosen, options })
     }
 
-    /// With the schedule of `eeruf_best`, if that is the method, and with what the method sets.
+    /// The arguments with the schedule of `eeruf_best`, if that is the method, and with the method's settings.
     pub(crate) fn with_best(mut self, background: &Background) -> PyResult<Self> {
         if let Some(robot) = self.world.robots().first() {
             let methods = std::slice::from_ref(&self.chosen.entry);

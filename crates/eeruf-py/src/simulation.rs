@@ -1,4 +1,4 @@
-//! `sim.Simulation`, which goes on step by step.
+//! `sim.Simulation`, which runs step by step.
 
 use std::{
     path::PathBuf,
@@ -28,11 +28,11 @@ use crate::{
     watch::{Watch, in_background},
 };
 
-/// A world that goes on step by step: for your own controller, filter, or display.
+/// A world that is simulated step by step, for your own controller, filter, or display.
 ///
-/// Its steps together give the readings of :func:`simulate`, bit for bit, and need little more memory than one of them.
-/// A copy goes on alike, from the same state. One that was pickled does again what was done since the beginning (about
-/// 30 bytes a call), and so does a copy of one by a :class:`Method` that makes firings or filters.
+/// All steps together give the readings of :func:`simulate`, bit for bit, in little more memory than one step's. A copy
+/// continues from the same state. A pickle repeats all calls since the beginning (about 30 bytes each), and so does a
+/// copy if a :class:`Method` makes its firings or filters.
 ///
 /// Args:
 ///     scene: with one robot or more.
@@ -48,8 +48,8 @@ use crate::{
 ///     mcap: a file that each step is written into, for Foxglove, Rerun and ROS 2: ranges, what is accepted, poses, the
 ///         scene, each reading's path and each firing. :meth:`close` ends it, and so does ``with``.
 ///
-/// What these callables raise comes out of the step that called them, and so does an ArgumentError about what they
-/// return. They run within a step: the simulation itself cannot be asked or steered by them.
+/// The step that called these callables raises their exceptions, and an ArgumentError about invalid return values. They
+/// run within a step, so they cannot query or steer the simulation.
 ///
 /// Raises:
 ///     ArgumentError: no such method, or something of the wrong type or out of range.
@@ -70,16 +70,16 @@ use crate::{
 pub(crate) struct Simulation {
     robots: usize,
     under_way: Mutex<UnderWay>,
-    /// The thread that lets time pass: a callable that is asked for must not wait for that.
+    /// The thread that is stepping, so that a callable within it does not wait for itself.
     stepping: Mutex<Option<ThreadId>>,
     asked: Mutex<Asked>,
     calls: Mutex<Arc<Calls>>,
-    /// The arguments that make it again, and what was done since.
+    /// The arguments that make it again, and the calls since then.
     made_of: Option<(Py<Scene>, Py<PyAny>)>,
     history: Mutex<History>,
 }
 
-/// Actions so far, in order.
+/// The calls so far, in order.
 #[derive(Default)]
 struct History {
     /// Shared with copies.
@@ -88,7 +88,7 @@ struct History {
 }
 
 impl History {
-    /// Shares it with a copy, whatever its length.
+    /// Shares the history with a copy, whatever its length.
     fn share(&mut self) -> Self {
         if !self.since.is_empty() {
             self.before.push(Arc::new(core::mem::take(&mut self.since)));
@@ -97,7 +97,7 @@ impl History {
     }
 }
 
-/// Operations on a simulation, so that one that was pickled comes to the same.
+/// Calls of a simulation, recorded so that a pickle can repeat them.
 enum Done {
     Step(f64),
     ToReading(f64),
@@ -138,7 +138,7 @@ fn begun(asked: &Asked, own: Own, ends: bool, stop: &Stop) -> Result<eeruf_sim::
 }
 
 impl Simulation {
-    /// With the caller's own firings and filters; it may end when the options say.
+    /// A simulation with the caller's own firings and filters, with an optional end.
     pub(crate) fn new_from(
         py: Python<'_>,
         asked: Asked,
@@ -176,7 +176,7 @@ impl Simulation {
         Arc::clone(&self.calls.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
-    /// Without the interpreter lock: whoever holds the simulation may wait for that.
+    /// Locks the simulation without the interpreter lock, since its holder may wait for that.
     pub(crate) fn lock(&self) -> PyResult<MutexGuard<'_, UnderWay>> {
         if *self.stepping.lock().unwrap_or_else(PoisonError::into_inner) == Some(thread::current().id()) {
             let why = "a simulation under way; expected its firing and its filter to leave it alone";
@@ -185,7 +185,7 @@ impl Simulation {
         Ok(self.under_way.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
-    /// Notes on which thread time passes.
+    /// Notes which thread is stepping.
     fn set_stepping(&self, who: Option<ThreadId>) {
         *self.stepping.lock().unwrap_or_else(PoisonError::into_inner) = who;
     }
@@ -194,7 +194,7 @@ impl Simulation {
         Ok(whole(name, robot, 0..=self.robots as u32 - 1)? as usize)
     }
 
-    /// Lets time pass while Ctrl-C and progress are looked after.
+    /// Steps while checking for Ctrl-C and reporting progress.
     pub(crate) fn go_on(
         &self,
         py: Python<'_>,
@@ -280,7 +280,7 @@ impl Simulation {
         self.close(py)
     }
 
-    /// Let time pass, without the interpreter lock. Ctrl-C ends it.
+    /// Advance the time, without the interpreter lock. Ctrl-C ends it.
     ///
     /// Args:
     ///     seconds: how long, 0 to 10^9.
@@ -306,7 +306,7 @@ impl Simulation {
         Ok(readings)
     }
 
-    /// Let time pass until the next reading comes, without the interpreter lock. Ctrl-C ends it.
+    /// Advance the time to the next reading, without the interpreter lock. Ctrl-C ends it.
     ///
     /// Args:
     ///     seconds: how long at most, 0 to 10^9.
@@ -333,7 +333,7 @@ impl Simulation {
         Ok(readings)
     }
 
-    /// From now on a robot goes ahead and turns at these speeds, whatever its motion was.
+    /// Set a robot's forward speed and rate of turn from now on.
     ///
     /// Args:
     ///     robot: which one, from 0.
@@ -365,10 +365,9 @@ impl Simulation {
         Ok(())
     }
 
-    /// Put a robot at another place, whatever is in between. It goes on at the speeds set last, or else stands.
+    /// Move a robot to another place at once. It keeps the speeds set last, or stands.
     ///
-    /// A ring with odometry takes the leap for a drive. Whether the robot stands free is not checked: see
-    /// ``RobotState.touches``.
+    /// A ring with odometry takes the jump for motion. Free space is not checked: see ``RobotState.touches``.
     ///
     /// Args:
     ///     robot: which one, from 0.
@@ -435,8 +434,8 @@ impl Simulation {
         })
     }
 
-    /// From the end of its present period on a robot's ring fires by another schedule, as late as keeps the intervals
-    /// of both. Readings before and after the change are not compared.
+    /// Change the schedule of a robot's ring at the end of its present period, late enough to keep the intervals of
+    /// both. Readings before and after the change are not compared.
     ///
     /// Args:
     ///     robot: which one, from 0.
@@ -468,8 +467,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// From now on sound travels among these walls and poles and in this air: obstacles have moved. Sound that is on
-    /// its way arrives as it would have before. Whether the robots stand free in it is not checked.
+    /// Change walls, poles and air from now on, for obstacles that have moved. Sound in flight arrives as it would have
+    /// before. Free space around the robots is not checked.
     ///
     /// Args:
     ///     scene: whose robots, noise, seed, order and physics do not count: those of the simulation stay.
@@ -532,7 +531,7 @@ impl Simulation {
         format!("<Simulation: {robots} robots, {entry}, {time}>")
     }
 
-    /// A copy has the same state; with parts that a method makes it does again what was done, as a pickle does.
+    /// A copy has the same state; if a method makes parts of it, it repeats all calls, as a pickle does.
     fn __copy__<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyAny>> {
         let (py, this) = (slf.py(), slf.get());
         let copied = py.detach(|| Ok::<_, PyErr>(this.lock()?.simulation.copy(Stop::default())))?;
@@ -556,7 +555,7 @@ impl Simulation {
         Self::__copy__(slf)
     }
 
-    /// A pickle does again what was done since the beginning, so that it goes on alike.
+    /// A pickle repeats all calls since the beginning, so that it continues in the same way.
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let Some((scene, method)) = self.made_of.as_ref().filter(|_| !self.calls().is_given()) else {
             let why = "a copy of a simulation with firing or filter; expected a sim.Method that makes them for each";

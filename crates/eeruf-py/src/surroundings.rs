@@ -1,4 +1,4 @@
-//! `sim.Material` and `sim.Noise`: what surfaces return and how noisy it is.
+//! `sim.Material` and `sim.Noise`: reflection of surfaces, and noise.
 
 use eeruf_sim::{Physics, Room};
 use pyo3::{
@@ -120,7 +120,7 @@ pub(crate) struct Noise {
     jitter_us_rms: f64,
     /// Number of bursts from outside that are heard in a second.
     bursts_per_s: f64,
-    /// Level above what is just heard, in dB.
+    /// Level above the threshold of hearing, in dB.
     burst_db: f64,
 }
 
@@ -179,7 +179,7 @@ pub(crate) fn noise(value: Option<&Bound<'_, PyAny>>) -> PyResult<eeruf_sim::Noi
 const PHYSICS: &str = "\"plain\", \"default\", or a dict with preset, shadows, edges, narrow_panels, range_walk, \
                        interference or fading_time_s";
 
-/// Effects of a scene: a preset's name, or what differs from one.
+/// Effects of a scene: a preset's name, or the differences from one.
 pub(crate) fn physics(value: Option<&Bound<'_, PyAny>>) -> PyResult<Physics> {
     let refused = |value: &Bound<'_, PyAny>| wrong("physics", shown(value), PHYSICS);
     let preset = |value: &Bound<'_, PyAny>| {
@@ -207,7 +207,7 @@ pub(crate) fn physics(value: Option<&Bound<'_, PyAny>>) -> PyResult<Physics> {
 
 const HEIGHT: &str = "\"flat\", \"room\", or a dict with ceiling_m, floor or ceiling";
 
-/// Floor and ceiling; none for a flat scene.
+/// Floor and ceiling; `None` for a flat scene.
 pub(crate) fn height(value: Option<&Bound<'_, PyAny>>) -> PyResult<Option<Room>> {
     let refused = |value: &Bound<'_, PyAny>| wrong("height", shown(value), HEIGHT);
     let Some(value) = value else { return Ok(None) };

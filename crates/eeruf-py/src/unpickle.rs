@@ -1,4 +1,4 @@
-//! `Readings` out of their columns, as a pickle holds them.
+//! `Readings` from their columns, the form in a pickle.
 
 use std::collections::HashSet;
 
@@ -13,7 +13,7 @@ use crate::{
     readings::{CAUSES, Readings},
 };
 
-/// The causes in the order of their codes, as [`CAUSES`].
+/// The causes in the order of their codes, like [`CAUSES`].
 const CAUSE_OF: [Cause; 5] = [Cause::Nothing, Cause::Own, Cause::Stale, Cause::Crosstalk, Cause::External];
 
 fn item<'py>(columns: &Bound<'py, PyDict>, name: &str) -> PyResult<Bound<'py, PyAny>> {
@@ -71,7 +71,7 @@ fn equally_long(expected: usize, lengths: &[usize]) -> PyResult<()> {
     }
 }
 
-/// Readings from their columns, as a pickle holds them.
+/// Readings from their columns, the form in a pickle.
 #[pyfunction]
 #[pyo3(name = "_readings_from_columns", signature = (method, duration_s, sensors, columns, paths))]
 pub(crate) fn readings_from_columns(

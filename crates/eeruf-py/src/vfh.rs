@@ -1,4 +1,4 @@
-//! `nav.Vfh`: the vector field histogram, and the `Steering` that comes of it.
+//! `nav.Vfh`: the vector field histogram, and its result, `Steering`.
 
 use std::sync::MutexGuard;
 
@@ -13,11 +13,11 @@ use crate::{
     pose::{point_of, pose_of, to_pose},
 };
 
-/// Rate of turn for a steering error of a radian, in rad/s, unless another gain is asked for.
+/// Default rate of turn for a steering error of a radian, in rad/s.
 const TURN_GAIN: f64 = 3.0;
 
-/// The vector field histogram (J. Borenstein and Y. Koren, IEEE T-RA 7(3), 1991): from a certainty grid to where to
-/// steer and how fast to go.
+/// The vector field histogram (J. Borenstein and Y. Koren, IEEE T-RA 7(3), 1991): from a certainty grid to direction
+/// and speed.
 ///
 /// The cells around the robot become a histogram of obstacle density over 72 sectors of 5 degrees; among its valleys
 /// the one nearest the target is steered for. Directions are in the scene's frame, counter-clockwise.
@@ -93,19 +93,19 @@ impl Vfh {
         self.0.window
     }
 
-    /// Over how many sectors to either side the histogram is smoothed.
+    /// Number of sectors to either side over which the histogram is smoothed.
     #[getter]
     fn smoothing(&self) -> usize {
         self.0.smoothing
     }
 
-    /// A sector with a lower density is free.
+    /// Density below which a sector is free.
     #[getter]
     fn threshold(&self) -> f64 {
         self.0.threshold
     }
 
-    /// A valley of more sectors is wide.
+    /// Number of sectors above which a valley is wide.
     #[getter]
     fn wide(&self) -> usize {
         self.0.wide
@@ -158,7 +158,7 @@ impl Vfh {
         read_only(place.py(), smoothed.into_iter())
     }
 
-    /// Where to steer from a place to come to a target.
+    /// The direction to steer in from a place to reach a target.
     ///
     /// Args:
     ///     grid: an ``eeruf.nav.Himm``.
@@ -190,8 +190,8 @@ impl Vfh {
         steering.map(of_python).transpose()
     }
 
-    /// Drives from a pose to a target, for ``Simulation.set_velocity``: the farther off the heading, the slower. Where
-    /// every way is blocked it stands and looks around.
+    /// Drives from a pose to a target, for ``Simulation.set_velocity``: the farther off the heading, the slower. If
+    /// every way is blocked, it stops and turns on the spot.
     ///
     /// Args:
     ///     grid: an ``eeruf.nav.Himm``.

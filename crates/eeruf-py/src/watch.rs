@@ -1,4 +1,4 @@
-//! Long work: Ctrl-C ends it, and its progress can be followed.
+//! Long work that Ctrl-C ends, with progress reports.
 
 use std::{
     cell::RefCell,
@@ -18,14 +18,14 @@ use pyo3::{
     types::PyBool,
 };
 
-/// Interval at which Python is asked whether to go on.
+/// Interval at which Python is asked if work must stop.
 const EVERY: Duration = Duration::from_millis(20);
 
-/// Time to wait for work that was stopped: it looks far more often.
+/// Time to wait for stopped work, which checks far more often.
 const PATIENCE: Duration = Duration::from_secs(3);
 
 thread_local! {
-    /// The stop flag of this thread's calls, as Ctrl-C is in the main thread.
+    /// The stop flag of this thread's calls, like Ctrl-C in the main thread.
     static STOPPED_BY: RefCell<Option<Stop>> = const { RefCell::new(None) };
 }
 
@@ -45,7 +45,7 @@ impl Switch {
     }
 }
 
-/// Calls a function with one argument; what it calls of eeruf on this thread ends when the switch is thrown.
+/// Calls a function with one argument; its calls of eeruf on this thread end when the switch is set.
 #[pyfunction]
 #[pyo3(name = "_until_stopped")]
 pub(crate) fn until_stopped<'py>(
@@ -59,12 +59,12 @@ pub(crate) fn until_stopped<'py>(
     result
 }
 
-/// A watcher's answer, as the search reads it.
+/// A watcher's answer in the form for a search.
 pub(crate) fn control_flow(go_on: bool) -> ControlFlow<()> {
     if go_on { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
 }
 
-/// Asks Python now and then, from the thread that called, whether to go on.
+/// Asks Python sometimes, on the calling thread, if work must stop.
 pub(crate) struct Watch {
     progress: Option<Py<PyAny>>,
     stopped_by: Option<Stop>,
@@ -73,7 +73,8 @@ pub(crate) struct Watch {
 }
 
 impl Watch {
-    /// `progress` is `None`, `True` for a progress bar, or a callable that takes the share done (or `None`) and a text.
+    /// A watch; `progress` is `None`, `True` for a progress bar, or a callable that takes the finished share (or
+    /// `None`) and a text.
     pub(crate) fn new(progress: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
         let progress = match progress {
             None => None,
@@ -94,7 +95,7 @@ impl Watch {
         Ok(Self { progress: progress.map(Bound::unbind), stopped_by, last: Instant::now(), error: None })
     }
 
-    /// True to go on. Called as often as one likes: it looks at the clock first.
+    /// Returns true to continue. It may be called often: it checks the clock first.
     pub(crate) fn go_on(&mut self, share: Option<f64>, text: impl FnOnce() -> String) -> bool {
         if self.error.is_some() {
             return false;
@@ -118,7 +119,7 @@ impl Watch {
         self.error.is_none()
     }
 
-    /// The result of the work, unless Python wanted it to end: then why. To be asked when all is done.
+    /// The result of the work, or the reason why Python stopped it. Call it when all is done.
     pub(crate) fn outcome<T>(self, result: PyResult<T>) -> PyResult<T> {
         if let Some(error) = self.error {
             return Err(error);
@@ -130,16 +131,16 @@ impl Watch {
     }
 }
 
-/// State that work on a thread of its own shares with the thread that called: how far it is, and whether to stop.
+/// State shared by work on its own thread and the calling thread: progress and the stop flag.
 #[derive(Default)]
 pub(crate) struct Background {
     stop: Stop,
-    /// The share done, and a text.
+    /// The finished share, and a text.
     reached: Mutex<(Option<f64>, String)>,
 }
 
 impl Background {
-    /// True to go on, with how far the work has come; from any thread.
+    /// Reports progress, and returns true to continue; callable on any thread.
     pub(crate) fn go_on(&self, share: Option<f64>, text: impl FnOnce() -> String) -> bool {
         let mut reached = self.reached.lock().unwrap_or_else(PoisonError::into_inner);
         // Threads report their shares in any order.
@@ -158,8 +159,8 @@ impl Background {
     }
 }
 
-/// Does work on a thread of its own, while the thread that called looks after Ctrl-C and progress: signals reach Python
-/// only there. When Python wants the work to end, the caller waits until it has.
+/// Runs work on its own thread, while the calling thread handles Ctrl-C and progress, since signals reach Python only
+/// there. If Python stops the work, the caller waits until it has ended.
 pub(crate) fn in_background<T: Send + 'static>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,

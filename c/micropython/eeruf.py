@@ -164,7 +164,7 @@ class FlowRing:
         return min(self.flow.least_us << self._every_echo, self.flow.most_us)
 
     def quiet_us(self, x):
-        """The quiet that a sensor needs before its firing and after it."""
+        """The quiet that a sensor needs before and after its firing."""
         return max(self._sensors[x].doubt * _UNIT_US, self._least())
 
     def _since_last(self, at_us):  # from the last firing of any until an instant, or 0
@@ -231,7 +231,7 @@ class FlowRing:
         return max(self._before, self._greatest)
 
     def moving(self, speed_mm_s, turn_mrad_s, now_us):
-        """Says how fast the robot moves and turns, once a control cycle. It holds for half a second, then the top speed does."""
+        """Reports how fast the robot moves and turns, once a control cycle. It holds for half a second, then the top speed does."""
         if not self._reached(now_us, self._since):  # the first word of a clock in its upper half, or one that has jumped
             self._since, self._before, self._greatest = now_us, max(self._before, self._greatest), 0
         recent = self._recent(now_us)
@@ -360,7 +360,7 @@ class FlowRing:
         return self._end_period(now_us) if is_due else None
 
     def deadline(self):
-        """When to poll next."""
+        """The time of the next poll."""
         return self._emit_at if self._pends() and not self._reached(self._emit_at, self._due) else self._due
 
     def state(self, x, now_us):
@@ -554,13 +554,13 @@ class FlowRing:
             self.echo(x, (fired_us + least_us) & self._mask, (fired_us + most_us) & self._mask)
 
     def forget(self, x):
-        """Forgets a sensor's echo, which is not what it seemed: its next reading is compared with nothing."""
+        """Forgets a sensor's echo, if it was false: its next reading is compared with nothing."""
         self._sensors[x].forget()
         self._sensors[x].doubt = self._first
         self._decide_from(self._due)
 
     def enable(self, x, enabled=True):
-        """Lets a sensor fire, or not, from its next turn on."""
+        """Enables or disables a sensor from its next turn on."""
         sensor = self._sensors[x]
         if not (enabled and sensor.enabled):
             sensor.enabled = enabled
@@ -569,14 +569,14 @@ class FlowRing:
             self._decide_from(self._due)
 
     def pause(self, paused=True):
-        """Lets no sensor fire until it is unset. Belief stays, and the next reading is compared with no other."""
+        """Pauses all sensors, or resumes them. Beliefs stay, and the next reading is compared with no other."""
         self._paused = paused
         for sensor in [] if paused else self._sensors:
             sensor.last_us, sensor.missed = None, max(sensor.missed, 1)
         self._decide_from(self._due)
 
     def restart(self, now_us):
-        """Again from the first sensor on, after a long sleep. Nothing is known then."""
+        """Starts again from the first sensor, after a long sleep, with nothing known."""
         self._restart(now_us)
         self._unsee(now_us)
 
@@ -683,11 +683,11 @@ class HcSr04FlowRing:
             pin.init(self._pin.IN)
 
     def state(self, x):
-        """As `FlowRing.state`, now."""
+        """Returns `FlowRing.state` at the present time."""
         return self.ring.state(x, self._time.ticks_us())
 
     def moving(self, speed_mm_s, turn_mrad_s):
-        """As `FlowRing.moving`, now."""
+        """Calls `FlowRing.moving` with the present time."""
         self.ring.moving(speed_mm_s, turn_mrad_s, self._time.ticks_us())
 
     def read(self):

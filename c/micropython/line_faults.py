@@ -1,4 +1,4 @@
-"""Faults of one echo line, as tests/data/line-faults.txt has them, and the table of tests/data/line-fault-outcomes.txt."""
+"""Faults of one echo line from tests/data/line-faults.txt, and the table of tests/data/line-fault-outcomes.txt."""
 
 FAULTY = 1  # in the file's ring
 

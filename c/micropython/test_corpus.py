@@ -21,7 +21,7 @@ def explanation(by):
 
 
 def flat(event):
-    """An event as the corpus has it."""
+    """An event in the corpus's form."""
     if event is None:
         return []
     if event[0] == READING:
@@ -30,7 +30,7 @@ def flat(event):
 
 
 def play(ring, what, n):
-    """Does to a ring what a line says: (what it said then, what it should have)."""
+    """Performs a line of the corpus on a ring: (actual result, expected result)."""
     if what == "P":
         event = flat(ring.poll(n[0]))
         # Its end of a round does not say how late firings were.

@@ -105,7 +105,7 @@ class Board:
 
 
 class Forgetful(HcSr04FlowRing):
-    """A program that triggers the faulty sensor by itself, and never says so."""
+    """A program that triggers the faulty sensor by itself, and never reports it."""
 
     def _trigger(self, x):
         if x == FAULTY:

@@ -17,7 +17,7 @@ class Dice:
 
 
 def settings():
-    """Refuses by name all that is wrong; the chip's number is the seed."""
+    """Checks that invalid settings are refused by name, and that the chip's number is the seed."""
     for wrong, said in (
         ({"sensors": 65, "seed": 1}, "sensors = 65: 1 to 64 expected"),
         ({"sensors": 6, "seed": 0}, "seed = 0: 1 to 4294967295 expected"),

@@ -1,7 +1,7 @@
 """Fire all ultrasonic sensors of a ring at once per period, and reject each other's echoes.
 
 EERUF (J. Borenstein and Y. Koren, IEEE T-RA 11(1), 1995) lets every sensor wait a little before it fires, by one of two waits
-that alternate and differ from sensor to sensor. A true echo does not care; crosstalk moves, and is rejected.
+that alternate and differ from sensor to sensor. A true echo is unaffected; crosstalk moves, and is rejected.
 
 Times are whole microseconds (``_us``), lengths metres, angles radians. Sensors count from 0. What is wrong with an argument raises
 an :class:`EerufError`, which is a ``ValueError``, with the name, the value and what is expected. ``KINDS`` are the kinds of readings,

@@ -1,4 +1,4 @@
-"""Arrays of codes that compare with the names that the codes stand for."""
+"""Arrays of codes that can be compared with the codes' names."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Codes(np.ndarray):
         return np.asarray(self) != self._code(other)
 
     def __reduce__(self) -> Any:
-        """Pickle as a plain array: what holds it names the codes again."""
+        """Pickle as a plain array; its owner adds the names again."""
         return np.asarray(self).__reduce__()
 
     def __reduce_ex__(self, protocol: Any) -> Any:

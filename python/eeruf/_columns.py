@@ -1,4 +1,4 @@
-"""Columns of logs, and the tables that they make."""
+"""Columns of logs, and tables made from them."""
 
 from __future__ import annotations
 

@@ -35,7 +35,7 @@ def to_pandas(columns: dict[str, NDArray[Any]]) -> Any:
 
 
 def to_polars(columns: dict[str, NDArray[Any]]) -> Any:
-    """Make a data frame with names for codes and nulls for what has no value."""
+    """Make a data frame with names for codes and nulls for missing values."""
     import polars as pl
 
     def converted(name: str, column: NDArray[Any]) -> Any:
@@ -90,7 +90,7 @@ def from_arrays(
     method: str | None,
     columns: dict[str, Any] | None,
 ) -> _eeruf.Readings:
-    """Make readings of arrays, with defaults for what is not there."""
+    """Make readings from arrays, with defaults for missing ones."""
     given: dict[str, Any] = {"sensor": sensor, "fired_s": fired_s, "t_echo_us": t_echo_us}
     given.update({name: value for name, value in (("kind", kind), ("reference_us", reference_us)) if value is not None})
     for name, value in (columns or {}).items():
@@ -174,7 +174,7 @@ def load(file: str | PathLike[str] | IO[bytes]) -> _eeruf.Readings:
 
 
 def _loaded(file: str | PathLike[str] | IO[bytes]) -> _eeruf.Readings:
-    """Read what ``save`` wrote, or end in an error of any kind."""
+    """Read what ``save`` wrote, or raise an error of any kind."""
     with np.load(file, allow_pickle=False) as parts:
         arrays = {name: parts[name] for name in parts.files}
     if int(arrays.pop("format")) != _FORMAT:

@@ -1,4 +1,4 @@
-"""Results of what Rust prints as JSON, put together and compared."""
+"""Results from the JSON that Rust prints, joined and compared."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ def _with_pairs(of: _Fields) -> _Fields:
 
 
 def summary(text: str) -> Summary:
-    """Make a summary of what Rust says of it."""
+    """Make a summary from Rust's JSON."""
     return Summary(**_fields(text))  # type: ignore[arg-type]
 
 
@@ -84,7 +84,7 @@ def _by_method(table: _Fields, runs: str) -> dict[str, list[_Fields]]:
 
 
 def set_one(text: str, runs: str) -> SetOne:
-    """Make the result of Set I of its JSON and that of its runs."""
+    """Make the result of Set I from its JSON and that of its runs."""
     table = _fields(text)
     table["runs"] = {name: [_alcove_run(of) for of in each] for name, each in _by_method(table, runs).items()}
     methods = cast("dict[str, _Fields]", table["methods"])
@@ -93,7 +93,7 @@ def set_one(text: str, runs: str) -> SetOne:
 
 
 def set_three(text: str, runs: str) -> SetThree:
-    """Make the result of Set III of its JSON and that of its runs."""
+    """Make the result of Set III from its JSON and that of its runs."""
     table = _fields(text)
     made = {name: [PlacingRun(**of) for of in each] for name, each in _by_method(table, runs).items()}  # type: ignore[arg-type]
     methods = cast("dict[str, _Fields]", table["methods"])
@@ -103,7 +103,7 @@ def set_three(text: str, runs: str) -> SetThree:
 
 
 def set_two(text: str, runs: Mapping[str, list[_Fields]]) -> SetTwo:
-    """Make the result of Set II of its JSON and the fields of its runs."""
+    """Make the result of Set II from its JSON and the fields of its runs."""
     table = _fields(text)
     figures = cast("dict[str, _Fields]", table["methods"])
     table["methods"] = {name: SetTwoFigures(**_with_pairs(of)) for name, of in figures.items()}  # type: ignore[arg-type]
@@ -244,7 +244,7 @@ def compare(
 
 
 def speed_sweep(text: str) -> SpeedSweep:
-    """Make the result of a sweep over speeds of its JSON."""
+    """Make the result of a sweep over speeds from its JSON."""
     table = _fields(text)
 
     def made(step: _Fields) -> SpeedStep:

@@ -1,4 +1,4 @@
-"""Logs that are no path of this machine: file objects, and what fsspec opens."""
+"""Logs other than local paths: file objects, and everything that fsspec opens."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Functions by which pickles make things again."""
+"""Functions with which pickles make objects again."""
 
 from __future__ import annotations
 
@@ -8,12 +8,12 @@ from eeruf import _eeruf
 
 
 def made(kind: type[Any], arguments: dict[str, Any]) -> object:
-    """Make an object of keyword arguments."""
+    """Make an object from keyword arguments."""
     return kind(**arguments)
 
 
 def simulation(scene: _eeruf.Scene, method: Any, seed: int | None, done: list[tuple[Any, ...]]) -> _eeruf.Simulation:
-    """Make a simulation and do again what was done."""
+    """Make a simulation and repeat the calls on it."""
     world = _eeruf.Simulation(scene, method, seed=seed)
     for name, *arguments in done:
         getattr(world, name)(*arguments)

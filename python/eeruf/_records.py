@@ -26,7 +26,7 @@ class Violation(Result):
     """
 
     kind: _Condition
-    """The condition; the last three where sensors are not all alike."""
+    """The condition; the last three only if sensors differ."""
     sensors: tuple[int, int]
     """The two sensors, from 0; the same one twice where a condition is about one alone."""
     phases: tuple[_Phase, _Phase]
@@ -34,9 +34,9 @@ class Violation(Result):
     value_us: int
     """Value of the schedule, in microseconds."""
     required_us: int
-    """Value that the condition asks for, in microseconds."""
+    """Value that the condition requires, in microseconds."""
     source: str
-    """Where the condition comes from, such as ``"Eq. (13a)"``."""
+    """Source of the condition, such as ``"Eq. (13a)"``."""
 
 
 @dataclass(frozen=True)
@@ -101,7 +101,7 @@ class Found(Result):
     value_us: int | None
     """The optimised value, in microseconds: the period, the smallest interval or ``T_delta``; None without a schedule."""
     bound_us: int | None
-    """No schedule is better than this, in microseconds; None if it is proven that there is none at all."""
+    """Proven bound of the value, in microseconds; None if no schedule exists."""
     proven: bool
     """True if no better schedule exists (or none at all, without a schedule)."""
     nodes: int
@@ -111,7 +111,7 @@ class Found(Result):
     reason: str | None = None
     """The reason why the period is not shorter, in words; None from ``WaitSearch.best``."""
     certificate: str | None = field(default=None, repr=False)
-    """A proof for :func:`~eeruf.check_certificate`; None unless ``design`` was asked for one."""
+    """A proof for :func:`~eeruf.check_certificate`; None unless requested from ``design``."""
     from_atlas: bool = field(default=False, repr=False)
     """True if the atlas of proven rings answered, and nothing was searched."""
 
@@ -130,7 +130,7 @@ class Blind(Result):
     sensor: int
     """The sensor, from 0."""
     firings: int
-    """Number of firings with an echo of which nothing was accepted."""
+    """Number of firings with an echo that was not accepted."""
 
 
 @dataclass(frozen=True)
@@ -148,7 +148,7 @@ class State(Result):
     """``"obstacle"``: something stands there; ``"clear"``: nothing is in range; ``"too_close"``: closer than the sensor can
     measure; ``"unanswered"``: it does not answer, or its line is stuck; ``"unknown"``."""
     t_echo_us: int | None = None
-    """The echo time of an obstacle, in microseconds; None for all else."""
+    """The echo time of an obstacle, in microseconds; otherwise None."""
     age_us: int = 0
     """Microseconds since that was last confirmed, or for which nothing has been known or answered; at most 2^31 (36 minutes),
     which stands for all longer times."""
@@ -196,7 +196,7 @@ class Steering(Result):
     direction_rad: float
     """The direction, in radians of the scene, counter-clockwise from the x axis."""
     valley: tuple[int, int] = (0, 72)
-    """The valley that was chosen: its first sector, and how many it has; 72 if nothing is near."""
+    """The chosen valley: its first sector and number of sectors; 72 if nothing is near."""
     trapped: bool = False
     """True if the direction leads away from the target, by more than 90 degrees: the robot is in a dead end, or soon will
     be."""

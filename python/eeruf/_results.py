@@ -33,19 +33,19 @@ class Spread(Result):
     """
 
     p10: float
-    """One geometry in ten has no more."""
+    """The value that one geometry in ten does not exceed."""
     median: float
-    """Half of them have no more."""
+    """The median over the geometries."""
     p90: float
-    """Nine in ten have no more."""
+    """The value that nine geometries in ten do not exceed."""
     median_95: tuple[float, float]
     """Where the median lies with 95 % confidence, by bootstrap."""
     p90_95: tuple[float, float]
-    """Where ``p90`` lies with 95 % confidence."""
+    """95 % confidence interval of ``p90``."""
     mean: float
     """The mean over the geometries."""
     mean_95: tuple[float, float]
-    """Where ``mean`` lies with 95 % confidence."""
+    """95 % confidence interval of ``mean``."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +74,7 @@ class Latency(Result):
 
 @dataclass(frozen=True)
 class NewStep(Result):
-    """The time until a wall is read right that comes nearer for the first time, so that no memory of places helps.
+    """The time until a wall is read right that comes nearer for the first time, where memory of places does not help.
 
     Example:
         >>> import eeruf
@@ -91,7 +91,7 @@ class NewStep(Result):
     p90_ms: float | None
     """Nine in ten are."""
     p95_ms: float | None
-    """Nineteen in twenty are."""
+    """Nineteen in twenty steps are seen within this time, in milliseconds."""
     never: float
     """Share of the steps that are not seen within 64 periods."""
 
@@ -113,9 +113,9 @@ class SetOneFigures(Result):
     wrong_of_all: Spread | None
     """Share of all readings that were accepted and wrong."""
     crosstalk_of_all: Spread | None
-    """The part of it that foreign or stale sound caused."""
+    """The part of ``wrong_of_all`` that foreign or stale sound caused."""
     confirmed_wrong_of_all: Spread | None
-    """The part of it that was confirmed, not only tentative."""
+    """The part of ``wrong_of_all`` that was confirmed, not only tentative."""
     wrong_of_accepted: Spread | None
     """Share of the accepted readings that were wrong."""
     wrong_before_filter: Spread | None
@@ -145,7 +145,7 @@ class SetOneFigures(Result):
     starved: float
     """Mean number of sensors that had fewer than 5 % of their readings accepted."""
     starved_95: tuple[float, float]
-    """Where ``starved`` lies with 95 % confidence, by bootstrap."""
+    """95 % confidence interval of ``starved``, by bootstrap."""
     blind: float
     """Mean number of sensors that were right under 5 % of the times they fired."""
     starved_in_part: float
@@ -153,9 +153,9 @@ class SetOneFigures(Result):
     nearer: Latency | None
     """The time until the back wall is read right again when it has come nearer."""
     farther: Latency | None
-    """The time when it has gone away as far."""
+    """The time until the wall is read right after it has moved away as far."""
     new_step: NewStep | None
-    """The time when it comes nearer for the first time."""
+    """The time until the wall is read right after it comes nearer for the first time."""
 
 
 # What of a summary is no figure.
@@ -181,7 +181,7 @@ class AlcoveRun(Result):
     nearer: tuple[int | None, ...] = field(repr=False)
     """For each step of the back wall nearer and each sensor, in which period it is read right; None for never."""
     farther: tuple[int | None, ...] = field(repr=False)
-    """In which period it is read right, for each step away."""
+    """For each step away and each sensor, in which period it is read right; None for never."""
     new_ms: tuple[float | None, ...] = field(repr=False)
     """For the first step nearer, after how many milliseconds each sensor reads it right."""
 
@@ -269,7 +269,7 @@ class Difference(Result):
     mean: float
     """Mean difference."""
     mean_95: tuple[float, float]
-    """Where the mean lies with 95 % confidence, by the percentile bootstrap over scenes."""
+    """95 % confidence interval of the mean, by the percentile bootstrap over scenes."""
     median: float
     """Median difference."""
     median_95: tuple[float, float] | None
@@ -418,13 +418,13 @@ class SetTwoFigures(Result):
     courses: int
     """Number of courses."""
     finished: int
-    """Number that were finished without contact."""
+    """Number of courses finished without contact."""
     finished_95: tuple[float, float]
-    """Where the share of finished courses lies with 95 % confidence, by Wilson's interval."""
+    """95 % confidence interval of the share of finished courses, by Wilson."""
     contacts: int
-    """In how many the robot touched something."""
+    """Number of courses in which the robot touched something."""
     timed_out: int
-    """In how many it was stuck, or too slow."""
+    """Number of courses in which the robot was stuck, or too slow."""
     mean_speed_m_s: float
     """Way over time of all courses together, in m/s."""
     top_speed_m_s: float
@@ -494,7 +494,7 @@ class SpeedStep(Result):
     finished_of_all: Mapping[str, float]
     """For each method, the share of all courses that were finished without contact."""
     finished_95: Mapping[str, tuple[float, float]]
-    """For each method, where that share lies with 95 % confidence, by Wilson's interval."""
+    """95 % confidence interval of that share for each method, by Wilson."""
     mean_speed_m_s: Mapping[str, float]
     """For each method, way over time of all courses together, in m/s."""
 
@@ -569,7 +569,7 @@ class SetThreeFigures(Result):
 
 @dataclass(frozen=True)
 class SetThreeBrief(Result):
-    """The figures that a group of placings is compared by.
+    """The figures by which groups of placings are compared.
 
     Example:
         >>> import eeruf
@@ -587,7 +587,7 @@ class SetThreeBrief(Result):
 
 @dataclass(frozen=True)
 class SetThreeGroup(Result):
-    """Some of the placings of Set III.
+    """A group of placings of Set III.
 
     Example:
         >>> import eeruf

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 def _plain(value: object) -> object:
-    """As numbers, texts, lists and dicts."""
+    """Convert to numbers, texts, lists and dicts."""
     if (to_dict := getattr(value, "to_dict", None)) is not None:
         return to_dict()
     if isinstance(value, dict):
@@ -56,7 +56,7 @@ class Summary(Result):
     accepted: int
     """Number of accepted readings."""
     wrong_of_all: float
-    """Share of all readings that were accepted and wrong: what does harm."""
+    """Share of all readings that were accepted and wrong: the harmful ones."""
     crosstalk_of_all: float
     """The part of ``wrong_of_all`` that foreign or stale sound caused."""
     confirmed_wrong_of_all: float
@@ -82,9 +82,9 @@ class Summary(Result):
     right_echoes_per_s: float
     """Accepted echoes that were right in a second, all sensors together."""
     age_ms: float
-    """Age of a sensor's last accepted reading, in milliseconds: half of the time it is no older."""
+    """Median age of a sensor's last accepted reading, in milliseconds."""
     age_p99_ms: float
-    """That age, 99 % of the time."""
+    """The 99th percentile of that age, in milliseconds."""
     readings_per_s: float
     """Accepted readings in a second, all sensors together."""
     starved: int
@@ -92,4 +92,4 @@ class Summary(Result):
     blind: int
     """Number of sensors that were right under 5 % of the times they fired."""
     starved_in_part: int
-    """Number of the starved that read right in one phase and not in another."""
+    """Number of starved sensors that read right in one phase and not in another."""

@@ -1,4 +1,4 @@
-"""Types of what results hold."""
+"""Types of the contents of results."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 class HeardPaths(TypedDict):
-    """Every path that some reading came along, as :attr:`Readings.paths` has them."""
+    """Every path of some reading, as in :attr:`Readings.paths`."""
 
     emitter_robot: NDArray[np.int64]
     emitter: NDArray[np.int64]

@@ -311,7 +311,7 @@ def _is_whole(value: object) -> bool:
 
 
 def _checked(first: int, seeds: int, tune: bool) -> None:
-    """Refuse to tune on seeds that figures are reported on."""
+    """Refuse to tune on seeds for reporting."""
     # A non-number is refused elsewhere.
     if tune and _is_whole(first) and _is_whole(seeds) and operator.index(first) + operator.index(seeds) > FIRST:
         raise _eeruf.ExperimentError(

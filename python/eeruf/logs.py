@@ -40,7 +40,7 @@ if TYPE_CHECKING:
         def read(self, size: int, /) -> bytes | str: ...
 
     class _Openable(Protocol):
-        """As ``fsspec.open`` makes them."""
+        """Files as opened by ``fsspec.open``."""
 
         @property
         def fs(self) -> Any: ...
@@ -486,7 +486,7 @@ def check(log: object, **options: Unpack[_Options]) -> Checked:
 
 
 def _as_log(log: object) -> _Log:
-    """Anything as what :func:`read_log` reads: tables and arrays as CSV."""
+    """Convert anything to what :func:`read_log` reads: tables and arrays to CSV."""
     import io
 
     import numpy as np

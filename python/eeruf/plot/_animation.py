@@ -1,4 +1,4 @@
-"""Sound on its way, and the readings that come of it, as a film."""
+"""An animation of sound in flight, and of the readings that it causes."""
 
 from __future__ import annotations
 

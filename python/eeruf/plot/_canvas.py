@@ -43,7 +43,7 @@ def colours(ax: Axes) -> Colours:
 
 
 def axes(ax: Axes | None, *, width: float = 7.0, height: float = 4.0) -> Axes:
-    """These, or new ones of this many inches."""
+    """The given axes, or new ones of this size in inches."""
     if ax is not None:
         return ax
     try:
@@ -90,18 +90,18 @@ def legend_above(ax: Axes, handles: list[Any] | None = None) -> int:
 
 
 def bare(ax: Axes) -> None:
-    """Without the spines that say nothing."""
+    """Remove the spines that carry no information."""
     ax.spines[["top", "right"]].set_visible(False)
 
 
 def check_kind(name: str, value: object, kind: type, expected: str) -> None:
-    """Refuse what is not of this type."""
+    """Refuse values of other types."""
     if not isinstance(value, kind):
         raise ArgumentError(f"{name} = {value!r:.60}; expected {expected}")
 
 
 def check_whole(name: str, value: object, least: int, most: int) -> None:
-    """Refuse what is no whole number, or out of range."""
+    """Refuse values that are not whole numbers, or out of range."""
     if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not least <= value <= most:
         raise ArgumentError(f"{name} = {value!r:.60}; expected a whole number from {least} to {most}")
 

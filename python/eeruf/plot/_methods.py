@@ -56,7 +56,7 @@ def methods(
     names: Sequence[str] | None = None,
     ax: Axes | None = None,
 ) -> Axes:
-    """The firing methods side by side: the median over all geometries, and where eight in ten of them lie.
+    """The firing methods side by side: the median over all geometries, and the middle 80 % of them.
 
     Args:
         result: of ``eeruf.experiments.set_one`` or ``set_two``.

@@ -1,4 +1,4 @@
-"""A room from above, its robots, and the ways that sound takes."""
+"""A room from above, its robots, and the paths of sound."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Which speed each firing method sustains."""
+"""The speed that each firing method sustains."""
 
 from __future__ import annotations
 

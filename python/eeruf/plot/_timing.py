@@ -1,4 +1,4 @@
-"""When the sensors fire."""
+"""Timing diagrams of schedules."""
 
 from __future__ import annotations
 

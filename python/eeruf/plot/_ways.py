@@ -1,4 +1,4 @@
-"""Ways of sound in a scene whose robots stand still."""
+"""Paths of sound in a scene whose robots stand still."""
 
 from __future__ import annotations
 

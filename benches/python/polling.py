@@ -20,7 +20,7 @@ from eeruf import sim
 FRONT = [(0.069, 0.136, 90), (0.114, 0.119, 50), (0.148, 0.078, 30), (0.166, 0.027, 10)]
 REAR = [(-0.157, -0.136, -90), (-0.203, -0.119, -130), (-0.237, -0.078, -150), (-0.255, -0.027, -170)]
 WAYS: list[Any] = ["polling", "sequential", "eeruf", "flow"]
-CROSSTALK = sim.CAUSES.index("crosstalk")
+CROSSTALK = eeruf.typing.CAUSES.index("crosstalk")
 
 
 def mirrored(array: list[tuple[float, float, int]]) -> list[tuple[float, float, int]]:

@@ -5,8 +5,7 @@ that alternate and differ from sensor to sensor. A true echo is unaffected; cros
 
 Times are whole microseconds (``_us``), lengths metres, angles radians. Sensors count from 0. What is wrong with an argument raises
 an :class:`EerufError`, which is a ``ValueError``, with the name, the value and what is expected. ``KINDS`` are the kinds of readings,
-of which arrays hold the indices. ``EXAMPLES`` are the scenes, rings and the checker that come along, see
-:func:`example`.
+of which arrays hold the indices. :mod:`eeruf.typing` has the types of results, for annotations.
 
 Example:
     >>> import eeruf
@@ -20,35 +19,26 @@ Example:
 
 from __future__ import annotations
 
-from eeruf import nav, sim, tables
+from eeruf import nav as nav
+from eeruf import sim as sim
+from eeruf import tables as tables
 from eeruf._eeruf import (
-    EXAMPLES,
     KINDS,
     Adaptation,
-    ArgumentError,
     CertificateError,
     EchoFilter,
     EerufError,
     EerufWarning,
-    ExperimentError,
-    FilterError,
     Fire,
     LogError,
     Needs,
-    PathsError,
     PeriodEnded,
     Reading,
     Ring,
-    RingError,
-    SceneError,
     Schedule,
-    ScheduleError,
-    SearchError,
     SensorWatch,
-    SimulationError,
     WaitSearch,
-    WaitTables,
-    __version__,
+    __version__ as __version__,
     check_certificate,
     curve,
     design,
@@ -59,81 +49,41 @@ from eeruf._eeruf import (
 # Checkers take it for true, as the one of typing, which would cost more to import than all of eeruf.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing_extensions import TypeGuard
-
-    from eeruf import experiments, logs, plot
-    from eeruf._eeruf import _Kind
-    from eeruf._records import Blind, Found, Report, State, Violation
-    from eeruf.logs import check, diagnose, read_firings, read_log, replay, survey
+    from eeruf import experiments as experiments
+    from eeruf import logs as logs
+    from eeruf import plot as plot
+    from eeruf import typing as typing
+    from eeruf._records import Found, Report, State
+    from eeruf.logs import check, read_log
 
 __all__ = [
-    "EXAMPLES",
     "KINDS",
     "Adaptation",
-    "ArgumentError",
-    "Blind",
     "CertificateError",
     "EchoFilter",
     "EerufError",
     "EerufWarning",
-    "ExperimentError",
-    "FilterError",
     "Fire",
     "Found",
     "LogError",
     "Needs",
-    "PathsError",
     "PeriodEnded",
     "Reading",
     "Report",
     "Ring",
-    "RingError",
-    "SceneError",
     "Schedule",
-    "ScheduleError",
-    "SearchError",
     "SensorWatch",
-    "SimulationError",
     "State",
-    "Violation",
     "WaitSearch",
-    "WaitTables",
-    "__version__",
     "check",
     "check_certificate",
     "curve",
     "design",
-    "diagnose",
     "example",
-    "experiments",
     "fit",
-    "is_kind",
-    "logs",
-    "nav",
-    "plot",
-    "read_firings",
     "read_log",
-    "replay",
     "show_versions",
-    "sim",
-    "survey",
-    "tables",
 ]
-
-
-def is_kind(name: str) -> TypeGuard[_Kind]:
-    """Return true for a kind of readings, so that a type checker takes it for one.
-
-    Args:
-        name: a text from elsewhere, such as a log.
-
-    Example:
-        >>> import eeruf
-        >>> eeruf.is_kind("accepted"), eeruf.is_kind("acepted")
-        (True, False)
-
-    """
-    return name in KINDS
 
 
 def show_versions() -> None:
@@ -159,15 +109,16 @@ def show_versions() -> None:
 
 if not TYPE_CHECKING:
     # On first use: a program without them need not wait for them, or for what they import.
-    _MODULES = ("experiments", "logs", "plot")
-    _FROM = dict.fromkeys(
-        ("check", "diagnose", "read_firings", "read_log", "replay", "survey"), "eeruf.logs"
-    ) | dict.fromkeys(("Blind", "Found", "Report", "State", "Violation"), "eeruf._records")
+    _MODULES = ("experiments", "logs", "plot", "typing")
+    _FROM = {"check": "logs", "read_log": "logs", "Found": "_records", "Report": "_records", "State": "_records"}
 
     # What there was, and what does it now.
-    _GONE = dict.fromkeys(
-        ("EchoTracker", "HoppingFound", "HoppingSchedule", "HoppingSettings", "TrackerSettings"), "Ring.flow"
-    ) | {"HoppingError": "RingError"}
+    _GONE = {
+        **dict.fromkeys(("EchoTracker", "HoppingSchedule", "HoppingSettings", "TrackerSettings"), "Ring.flow"),
+        **{name: f"logs.{name}" for name in ("diagnose", "read_firings", "replay", "survey")},
+        **{name: f"typing.{name}" for name in ("Blind", "Violation", "WaitTables", "is_kind")},
+        **dict.fromkeys(("ArgumentError", "RingError", "SceneError", "ScheduleError", "SearchError"), "EerufError"),
+    }
 
     def __getattr__(name: str) -> object:
         from importlib import import_module
@@ -175,7 +126,7 @@ if not TYPE_CHECKING:
         if name in _MODULES:
             return import_module(f"eeruf.{name}")
         if name in _FROM:
-            globals()[name] = found = getattr(import_module(_FROM[name]), name)
+            globals()[name] = found = getattr(import_module(f"eeruf.{_FROM[name]}"), name)
             return found
         if name in _GONE:
             raise AttributeError(f"eeruf.{name} is gone; eeruf.{_GONE[name]} does it")
@@ -184,4 +135,4 @@ if not TYPE_CHECKING:
         raise AttributeError(f"module 'eeruf' has no attribute {name!r}")
 
     def __dir__() -> list[str]:
-        return sorted({*globals(), *__all__})
+        return sorted({*globals(), *__all__, *_MODULES})

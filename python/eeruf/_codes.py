@@ -19,7 +19,7 @@ class Codes(np.ndarray):
             return other
         if other not in self._names:
             expected = " or ".join(f'"{name}"' for name in self._names)
-            raise _eeruf.ArgumentError(f"compared with {other!r}; expected {expected}")
+            raise _eeruf.EerufError(f"compared with {other!r}; expected {expected}")
         return self._names.index(other)
 
     def __eq__(self, other: object) -> Any:
@@ -46,6 +46,6 @@ class Kinds(Codes):
 
 
 class Causes(Codes):
-    """Indices into ``eeruf.sim.CAUSES``."""
+    """Indices into ``eeruf.typing.CAUSES``."""
 
     _names = _eeruf.CAUSES

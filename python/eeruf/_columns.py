@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, ClassVar, TypeVar
 
-from eeruf._eeruf import ArgumentError
+from eeruf._eeruf import EerufError
 
 if TYPE_CHECKING:
     import numpy as np
@@ -24,9 +24,9 @@ def column(name: str, values: ArrayLike, dtype: type[_Number]) -> NDArray[_Numbe
         with np.errstate(invalid="ignore"):
             found = np.asarray(values).astype(dtype, order="C")
     except (TypeError, ValueError, OverflowError):
-        raise ArgumentError(f"{name} = {values!r:.60}; expected numbers, one for each firing") from None
+        raise EerufError(f"{name} = {values!r:.60}; expected numbers, one for each firing") from None
     if found.ndim != 1:
-        raise ArgumentError(f"{name} has the shape {found.shape}; expected one number for each firing")
+        raise EerufError(f"{name} has the shape {found.shape}; expected one number for each firing")
     return found
 
 

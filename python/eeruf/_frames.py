@@ -95,7 +95,7 @@ def from_arrays(
     given.update({name: value for name, value in (("kind", kind), ("reference_us", reference_us)) if value is not None})
     for name, value in (columns or {}).items():
         if name not in _DEFAULTS:
-            raise _eeruf.ArgumentError(f"no column {name}; expected one of {', '.join(_DEFAULTS)}")
+            raise _eeruf.EerufError(f"no column {name}; expected one of {', '.join(_DEFAULTS)}")
         given[name] = value
     arrays: dict[str, NDArray[Any]] = {}
     for name, value in given.items():
@@ -107,11 +107,11 @@ def from_arrays(
                 # An int8 from wider whole numbers is checked below.
                 arrays[name] = array.astype(dtype, casting="unsafe" if dtype == "int8" else "same_kind")
         except (TypeError, ValueError) as error:
-            raise _eeruf.ArgumentError(f"{name} = {value!r:.60}; expected {expected}") from error
+            raise _eeruf.EerufError(f"{name} = {value!r:.60}; expected {expected}") from error
         if arrays[name].shape != arrays["sensor"].shape or array.ndim != 1:
-            raise _eeruf.ArgumentError(f"shape of {name} = {array.shape}; expected {arrays['sensor'].shape}")
+            raise _eeruf.EerufError(f"shape of {name} = {array.shape}; expected {arrays['sensor'].shape}")
         if dtype == "int8" and not np.array_equal(array, arrays[name]):
-            raise _eeruf.ArgumentError(f"{name} = {value!r:.60}; expected {expected}")
+            raise _eeruf.EerufError(f"{name} = {value!r:.60}; expected {expected}")
     count, echoes = len(arrays["sensor"]), arrays["t_echo_us"]
     clear, accepted = _eeruf.KINDS.index("clear"), _eeruf.KINDS.index("accepted")
     arrays.setdefault("kind", np.where(np.isnan(echoes), clear, accepted).astype("int8"))
@@ -121,7 +121,7 @@ def from_arrays(
     for name, (dtype, default) in _DEFAULTS.items():
         arrays.setdefault(name, np.full(count, default, dtype=dtype))
     if (arrays["path"] >= 0).any():
-        raise _eeruf.ArgumentError("path = an index; expected -1, since these readings have no paths")
+        raise _eeruf.EerufError("path = an index; expected -1, since these readings have no paths")
     if duration_s is None:
         duration_s = float(arrays["fired_s"].max()) if count else 0.0
     if sensors is None:
@@ -157,7 +157,7 @@ def save(
     try:
         np.savez_compressed(file, **parts)
     except (AttributeError, TypeError, ValueError) as error:
-        raise _eeruf.ArgumentError(f"file = {file!r:.60}; expected a path, or a file that takes bytes") from error
+        raise _eeruf.EerufError(f"file = {file!r:.60}; expected a path, or a file that takes bytes") from error
 
 
 def load(file: str | PathLike[str] | IO[bytes]) -> _eeruf.Readings:
@@ -168,7 +168,7 @@ def load(file: str | PathLike[str] | IO[bytes]) -> _eeruf.Readings:
         raise
     except Exception as error:
         # Of the kinds that a damaged file ends in, NumPy, zipfile and zlib name some.
-        raise _eeruf.ArgumentError(
+        raise _eeruf.EerufError(
             f"file = {file!r:.60}; expected what Readings.save wrote, in its format {_FORMAT}"
         ) from error
 

@@ -6,7 +6,7 @@ import json
 from dataclasses import fields, replace
 from typing import TYPE_CHECKING, TypeVar, cast
 
-from eeruf._eeruf import ArgumentError, _difference, _figures
+from eeruf._eeruf import EerufError, _difference, _figures
 from eeruf._results import (
     AlcoveRun,
     Difference,
@@ -151,7 +151,7 @@ def concat(tables: Iterable[Table]) -> Table:
         tables: what :func:`set_one`, :func:`set_two` or :func:`set_three` returned for successive seeds, in any order.
 
     Raises:
-        ArgumentError: tables of several kinds, settings or methods, or a seed that is missing or there twice.
+        EerufError: tables of several kinds, settings or methods, or a seed that is missing or there twice.
 
     Example:
         >>> from eeruf import experiments
@@ -166,10 +166,10 @@ def concat(tables: Iterable[Table]) -> Table:
         parts = []
     expected = "tables of one of set_one, set_two and set_three"
     if not parts or not isinstance(parts[0], (SetOne, SetTwo, SetThree)):
-        raise ArgumentError(f"tables = {tables!r:.60}; expected {expected}")
+        raise EerufError(f"tables = {tables!r:.60}; expected {expected}")
     for part in parts[1:]:
         if type(part) is not type(parts[0]):
-            raise ArgumentError(f"tables: a {type(parts[0]).__name__} and a {type(part).__name__}; expected {expected}")
+            raise EerufError(f"tables: a {type(parts[0]).__name__} and a {type(part).__name__}; expected {expected}")
     parts.sort(key=lambda part: part.first)
     whole = parts[0]
     merged = {"first", "seeds", "methods", "runs", "groups"}
@@ -177,12 +177,12 @@ def concat(tables: Iterable[Table]) -> Table:
         for name in (name.name for name in fields(part) if name.name not in merged):
             one, other = getattr(whole, name), getattr(part, name)
             if one != other:
-                raise ArgumentError(f"tables: {name} = {one!r} and {other!r}; expected parts of one experiment")
+                raise EerufError(f"tables: {name} = {one!r} and {other!r}; expected parts of one experiment")
         if list(part.runs) != list(whole.runs):
-            raise ArgumentError(f"tables: methods {list(whole.runs)} and {list(part.runs)}; expected the same")
+            raise EerufError(f"tables: methods {list(whole.runs)} and {list(part.runs)}; expected the same")
         if part.first != before.first + before.seeds:
             last, expected = before.first + before.seeds - 1, "each seed once, without a gap"
-            raise ArgumentError(f"tables: seeds up to {last} and from {part.first} on; expected {expected}")
+            raise EerufError(f"tables: seeds up to {last} and from {part.first} on; expected {expected}")
     runs = {name: [run for part in parts for run in part.runs[name]] for name in whole.runs}
     of = {SetOne: (1, Result.to_dict), SetTwo: (2, _of_course), SetThree: (3, Result.to_dict)}
     number, plain = of[type(whole)]
@@ -211,7 +211,7 @@ def compare(
         For each figure its :class:`Difference`: mean with the bootstrap's interval, median with the sign test's.
 
     Raises:
-        ArgumentError: no runs, runs of different experiments, or different seeds.
+        EerufError: no runs, runs of different experiments, or different seeds.
 
     Example:
         >>> from eeruf import experiments
@@ -224,16 +224,16 @@ def compare(
     def by_seed(name: str, runs: Iterable[AlcoveRun | Run | PlacingRun]) -> dict[int, AlcoveRun | Run | PlacingRun]:
         given = list(runs) if isinstance(runs, (list, tuple)) else []
         if not given or not all(isinstance(run, (AlcoveRun, Run, PlacingRun)) for run in given):
-            raise ArgumentError(f'{name} = {runs!r:.60}; expected runs of one method, such as table.runs["eeruf"]')
+            raise EerufError(f'{name} = {runs!r:.60}; expected runs of one method, such as table.runs["eeruf"]')
         return {run.seed: run for run in given}
 
     ours, theirs = by_seed("one", one), by_seed("other", other)
     if ours.keys() != theirs.keys():
         alone = sorted(ours.keys() ^ theirs.keys())
-        raise ArgumentError(f"seed {alone[0]} and {len(alone) - 1} others are of one method only; expected equal seeds")
+        raise EerufError(f"seed {alone[0]} and {len(alone) - 1} others are of one method only; expected equal seeds")
     pairs = [(ours[seed].figures(), theirs[seed].figures()) for seed in sorted(ours)]
     if pairs[0][0].keys() != pairs[0][1].keys():
-        raise ArgumentError("runs of two experiments; expected those of one")
+        raise EerufError("runs of two experiments; expected those of one")
     found = {}
     for name in pairs[0][0]:
         values = [(first[name], second[name]) for first, second in pairs]

@@ -7,7 +7,7 @@ import io
 import os
 from typing import TYPE_CHECKING
 
-from eeruf._eeruf import ArgumentError
+from eeruf._eeruf import EerufError
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -31,7 +31,7 @@ def opened_log(log: object, expected: str = "the path of a log, a URL or a file 
         try:
             import fsspec
         except ImportError:
-            raise ArgumentError(f"log = {log!r:.60}; expected fsspec, which opens it: pip install fsspec") from None
+            raise EerufError(f"log = {log!r:.60}; expected fsspec, which opens it: pip install fsspec") from None
         files, path = fsspec.core.url_to_fs(log)
     elif isinstance(log, io.TextIOBase):
         yield _Text(log), _name(log)
@@ -45,7 +45,7 @@ def opened_log(log: object, expected: str = "the path of a log, a URL or a file 
         yield log
         return
     else:
-        raise ArgumentError(f"log = {log!r:.60}; expected {expected}")
+        raise EerufError(f"log = {log!r:.60}; expected {expected}")
     name = str(log) if is_url else str(path)
     if not name.endswith("/"):
         with files.open(path, "rb") as file:

@@ -122,7 +122,7 @@ class Blind(Result):
 
     Example:
         >>> import eeruf
-        >>> eeruf.Blind(sensor=3, firings=20).to_dict()
+        >>> eeruf.typing.Blind(sensor=3, firings=20).to_dict()
         {'sensor': 3, 'firings': 20}
 
     """

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, fields
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, ClassVar, Literal
 
-from eeruf._summary import Result, Summary
+from eeruf._summary import Result, Summary, Table
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -98,7 +98,7 @@ class NewStep(Result):
 
 @dataclass(frozen=True)
 class SetOneFigures(Result):
-    """A method's figures over the geometries of Set I; those of a :class:`~eeruf.sim.Summary`, spread.
+    """A method's figures over the geometries of Set I; those of a :class:`~eeruf.typing.Summary`, spread.
 
     A spread is None where no geometry has the figure.
 
@@ -284,7 +284,7 @@ class Difference(Result):
 
 
 @dataclass(frozen=True)
-class SetOne(Result):
+class SetOne(Table):
     """The result of ``eeruf.experiments.set_one``; ``to_dict`` is what ``eeruf experiment set-one --json`` prints.
 
     Example:
@@ -294,6 +294,14 @@ class SetOne(Result):
         (2, 8, ['eeruf'])
 
     """
+
+    _titles: ClassVar[dict[str, str]] = {
+        "wrong_of_all": "wrong of all %",
+        "rejected": "rejected %",
+        "good_lost": "good lost %",
+        "age_ms": "age, ms",
+        "readings_per_s": "readings/s",
+    }
 
     first: int
     """The first geometry's number."""
@@ -446,7 +454,7 @@ class SetTwoFigures(Result):
 
 
 @dataclass(frozen=True)
-class SetTwo(Result):
+class SetTwo(Table):
     """The result of ``eeruf.experiments.set_two``; ``to_dict`` is what ``eeruf experiment set-two --json`` prints, and the runs.
 
     Example:
@@ -456,6 +464,14 @@ class SetTwo(Result):
         (1, 1)
 
     """
+
+    _titles: ClassVar[dict[str, str]] = {
+        "courses": "courses",
+        "finished": "finished",
+        "contacts": "contacts",
+        "mean_speed_m_s": "mean speed, m/s",
+        "wrong_of_all": "wrong of all %",
+    }
 
     first: int
     """The first course's number."""
@@ -500,7 +516,7 @@ class SpeedStep(Result):
 
 
 @dataclass(frozen=True)
-class SpeedSweep(Result):
+class SpeedSweep(Table):
     """The result of ``eeruf.experiments.speed_sweep``.
 
     Example:
@@ -527,6 +543,11 @@ class SpeedSweep(Result):
     """The outcome at each speed."""
     borne_m_s: Mapping[str, float | None]
     """For each method the highest of the speeds at which 95 % of the courses were finished; None if there is none."""
+
+    def _rows(self) -> list[list[str]]:
+        speeds = [f"{step.speed_m_s:g} m/s, finished %" for step in self.steps]
+        shares = {name: [f"{100 * step.finished_of_all[name]:.0f}" for step in self.steps] for name in self.borne_m_s}
+        return [["method", *speeds], *([name, *row] for name, row in shares.items())]
 
 
 @dataclass(frozen=True)
@@ -610,7 +631,7 @@ class SetThreeGroup(Result):
 
 
 @dataclass(frozen=True)
-class SetThree(Result):
+class SetThree(Table):
     """Set III over many placings of robots of one make.
 
     Example:
@@ -620,6 +641,12 @@ class SetThree(Result):
         (['sequential', 'flow'], 'room')
 
     """
+
+    _titles: ClassVar[dict[str, str]] = {
+        "others_of_accepted": "others of accepted %",
+        "belief_right": "belief right %",
+        "right_echoes_per_s": "right echoes/s",
+    }
 
     first: int
     """The first placing's number."""

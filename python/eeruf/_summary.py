@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, ClassVar
 
 if TYPE_CHECKING:
     from eeruf._eeruf import _MethodName
@@ -28,12 +28,51 @@ class Result:
         """Return the fields by their names, with results as dicts and arrays as lists, for JSON and data frames.
 
         Example:
-            >>> from eeruf.experiments import Spread
+            >>> from eeruf.typing import Spread
             >>> Spread(0.0, 0.1, 0.5, (0.0, 0.2), (0.4, 0.6), 0.2, (0.1, 0.3)).to_dict()["median_95"]
             [0.0, 0.2]
 
         """
         return {name.name: _plain(getattr(self, name.name)) for name in fields(self)}  # type: ignore[arg-type]
+
+
+def _said(value: object, title: str) -> str:
+    """A figure as a cell: the median of a spread with where it lies with 95 % confidence, percent where the title says so."""
+    scale, digits = (100.0, 1) if title.endswith("%") else (1.0, 2 if title.endswith("m/s") else 0)
+    if value is None:
+        return "-"
+    if (spread := getattr(value, "median_95", None)) is not None:
+        low, high = (f"{scale * bound:.{digits}f}" for bound in spread)
+        return f"{scale * value.median:.{digits}f} ({low} to {high})"  # type: ignore[attr-defined]
+    return f"{scale * value:.{digits}f}"  # type: ignore[operator]
+
+
+class Table(Result):
+    """A result that prints as a table with a row for each method: as text, and in a notebook."""
+
+    _titles: ClassVar[dict[str, str]]
+    """The figures that are shown, and the titles of their columns."""
+
+    def _rows(self) -> list[list[str]]:
+        methods = self.methods.items()  # type: ignore[attr-defined]
+        rows = [[name, *(_said(getattr(of, key), title) for key, title in self._titles.items())] for name, of in methods]
+        return [["method", *self._titles.values()], *rows]
+
+    def __str__(self) -> str:
+        """Return the table as text; ``to_dict`` has all figures."""
+        rows = self._rows()
+        wide = [max(len(row[column]) for row in rows) for column in range(len(rows[0]))]
+        lines = ("  ".join([row[0].ljust(wide[0]), *map(str.rjust, row[1:], wide[1:])]).rstrip() for row in rows)
+        return chr(10).join(lines)
+
+    def _repr_html_(self) -> str:
+        from html import escape
+
+        lines = [
+            "".join(f"<{cell}>{escape(of)}</{cell}>" for of in row)
+            for row, cell in zip(self._rows(), ("th", *["td"] * len(self._rows())))
+        ]
+        return "<table>" + "".join(f"<tr>{line}</tr>" for line in lines) + "</table>"
 
 
 @dataclass(frozen=True)

@@ -3,13 +3,13 @@
 Needs Gymnasium 1.1 or later (``pip install eeruf[gymnasium]``). Importing this module registers ``eeruf/Course-v0``. The robot
 starts at the near end of a lab with poles and is to reach the line 8.2 m ahead within 40 s.
 
-An observation has, for a ring of K sensors, K ranges in metres (those of the latest accepted readings; :data:`FARTHEST_M` where nothing
-was in range or nothing is known), K ages of these in seconds (at most :data:`OLDEST_S`), the distance to the finishing line in metres,
+An observation has, for a ring of K sensors, K ranges in metres (those of the latest accepted readings; 10 m where nothing
+was in range or nothing is known), K ages of these in seconds (at most 10 s), the distance to the finishing line in metres,
 the place across in metres from the lab's middle, and the heading in radians. An action is a speed from 0 to 1 m/s and a rate of turn
-from -1 to 1, of :data:`TURN_RAD_S`. The reward is the way gained towards the line in metres, 10 for reaching it, and -10 for a contact.
+from -1 to 1, of 1.5 rad/s. The reward is the way gained towards the line in metres, 10 for reaching it, and -10 for a contact.
 ``info["wrong"]`` is the share of sensors whose latest accepted reading is wrong, which only a simulator knows.
 
-Courses below 2,000 are for learning; report on those from ``eeruf.experiments.FIRST`` on.
+Courses below 2,000 are for learning; report on those from 20,000 on.
 """
 
 from __future__ import annotations
@@ -29,37 +29,29 @@ if TYPE_CHECKING:
     from eeruf._eeruf import _Method as Method
     from eeruf._eeruf import _Physics
 
-__all__ = ["FARTHEST_M", "OLDEST_S", "STEP_S", "TURN_RAD_S", "CourseEnv", "CourseVectorEnv"]
+__all__ = ["CourseEnv", "CourseVectorEnv"]
 
-FARTHEST_M: float = 10.0
-"""The range of a sensor that sees nothing, in metres."""
-
-OLDEST_S: float = 10.0
-"""The greatest age in an observation, in seconds."""
-
-TURN_RAD_S: float = 1.5
-"""The rate of turn of the action 1, in rad/s."""
-
-STEP_S: float = 0.06
-"""The time that a step takes, in seconds, unless another is asked for."""
-
+# The range of a sensor that sees nothing, and the greatest age in an observation.
+_FARTHEST_M, _OLDEST_S = 10.0, 10.0
+# The rate of turn of the action 1, and the time that a step takes.
+_TURN_RAD_S, _STEP_S = 1.5, 0.06
 _FINISH_X_M, _MIDDLE_Y_M, _MOST_S = 8.2, 3.0, 40.0
 _START_X_M = 1.0
 _SPEED_OF_SOUND_M_S = 343.2
 
 
 def _spaces(sensors: int) -> tuple[gymnasium.spaces.Box, gymnasium.spaces.Box]:
-    low = [0.0] * (2 * sensors) + [-FARTHEST_M, -FARTHEST_M, -np.pi]
-    high = [FARTHEST_M] * sensors + [OLDEST_S] * sensors + [FARTHEST_M, FARTHEST_M, np.pi]
+    low = [0.0] * (2 * sensors) + [-_FARTHEST_M, -_FARTHEST_M, -np.pi]
+    high = [_FARTHEST_M] * sensors + [_OLDEST_S] * sensors + [_FARTHEST_M, _FARTHEST_M, np.pi]
     observed = gymnasium.spaces.Box(np.array(low, np.float32), np.array(high, np.float32))
     return observed, gymnasium.spaces.Box(np.array([0.0, -1.0], np.float32), np.array([1.0, 1.0], np.float32))
 
 
 def _observed(state: _eeruf.BatchState) -> NDArray[np.float32]:
-    range_m = np.nan_to_num(state.t_echo_us * 1e-6 * _SPEED_OF_SOUND_M_S / 2, nan=FARTHEST_M)
+    range_m = np.nan_to_num(state.t_echo_us * 1e-6 * _SPEED_OF_SOUND_M_S / 2, nan=_FARTHEST_M)
     x, y, heading = state.pose.T
     place = np.stack([_FINISH_X_M - x, y - _MIDDLE_Y_M, (heading + np.pi) % (2 * np.pi) - np.pi], axis=1)
-    observed = np.concatenate([range_m.clip(0, FARTHEST_M), state.age_s.clip(0, OLDEST_S), place], axis=1)
+    observed = np.concatenate([range_m.clip(0, _FARTHEST_M), state.age_s.clip(0, _OLDEST_S), place], axis=1)
     return observed.astype(np.float32)
 
 
@@ -92,14 +84,14 @@ class CourseVectorEnv(VectorEnv[NDArray[np.float32], NDArray[np.float32], NDArra
         *,
         method: Method = "eeruf",
         numbers: range = range(2_000),
-        step_s: float = STEP_S,
+        step_s: float = _STEP_S,
         physics: _Physics = "default",
         threads: int | None = None,
     ) -> None:
         """Make the worlds; ``reset`` draws their courses."""
         super().__init__()
         if not len(numbers):
-            raise _eeruf.ArgumentError(f"numbers = {numbers!r}; expected a range of at least one course")
+            raise _eeruf.EerufError(f"numbers = {numbers!r}; expected a range of at least one course")
         self._courses = courses(numbers[0], 0, physics=physics)
         self._courses.numbers = numbers
         self._batch = _eeruf.Batch([self._courses[0]] * num_envs, method, threads=threads)
@@ -130,7 +122,7 @@ class CourseVectorEnv(VectorEnv[NDArray[np.float32], NDArray[np.float32], NDArra
     ) -> tuple[NDArray[np.float32], NDArray[Any], NDArray[Any], NDArray[Any], dict[str, Any]]:
         """Drive on for one step in all worlds."""
         speed, turn = np.clip(np.asarray(actions, float), [0.0, -1.0], [1.0, 1.0]).T
-        state = self._batch.step(self._step_s, speed, turn * TURN_RAD_S)
+        state = self._batch.step(self._step_s, speed, turn * _TURN_RAD_S)
         x_m = state.pose[:, 0]
         finished = x_m >= _FINISH_X_M
         contact = state.touches & ~finished
@@ -179,7 +171,7 @@ class CourseEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
         *,
         method: Method = "eeruf",
         numbers: range = range(2_000),
-        step_s: float = STEP_S,
+        step_s: float = _STEP_S,
         physics: _Physics = "default",
     ) -> None:
         """Make the world; ``reset`` draws its course."""

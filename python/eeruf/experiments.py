@@ -2,7 +2,7 @@
 
 What the tables say, and where the paper promises too much, stands in ``docs/log/experiments.md``; the program prints
 the same ones (``eeruf experiment``). A method is a name or a ``eeruf.sim.Method``, which may have a filter or a firing
-of your own. Parameters are tuned on seeds below 2,000; what is reported starts at :data:`FIRST`.
+of your own. Parameters are tuned on seeds below 2,000; what is reported starts at 20,000.
 """
 
 from __future__ import annotations
@@ -13,25 +13,6 @@ from typing import TYPE_CHECKING, Any, Literal, overload
 
 from eeruf import _eeruf, _making
 from eeruf._making import compare, concat
-from eeruf._results import (
-    AlcoveRun,
-    Difference,
-    Latency,
-    NewStep,
-    PlacingRun,
-    Run,
-    SetOne,
-    SetOneFigures,
-    SetThree,
-    SetThreeBrief,
-    SetThreeFigures,
-    SetThreeGroup,
-    SetTwo,
-    SetTwoFigures,
-    SpeedStep,
-    SpeedSweep,
-    Spread,
-)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -46,26 +27,6 @@ if TYPE_CHECKING:
     _Pilot = Literal["own", "shared", "published", "published-gro"]
 
 __all__ = [
-    "FIRST",
-    "SPEEDS_M_S",
-    "AlcoveRun",
-    "Difference",
-    "Latency",
-    "NewStep",
-    "PlacingRun",
-    "Run",
-    "Scenes",
-    "SetOne",
-    "SetOneFigures",
-    "SetThree",
-    "SetThreeBrief",
-    "SetThreeFigures",
-    "SetThreeGroup",
-    "SetTwo",
-    "SetTwoFigures",
-    "SpeedStep",
-    "SpeedSweep",
-    "Spread",
     "alcoves",
     "compare",
     "concat",
@@ -78,11 +39,9 @@ __all__ = [
     "speed_sweep",
 ]
 
-FIRST: int = 20_000
-"""The number of the first alcove or course unless ``first`` says otherwise; parameters were tuned on numbers below 2,000."""
-
-SPEEDS_M_S: tuple[float, ...] = (0.5, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0)
-"""The top speeds of :func:`speed_sweep` unless others are given, in m/s."""
+# Parameters were tuned on numbers below 2,000.
+_FIRST = 20_000
+_SPEEDS_M_S = (0.5, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0)
 
 
 class Scenes:
@@ -106,11 +65,11 @@ class Scenes:
     def __init__(self, kind: Literal["alcove", "course"], numbers: range, physics: _Physics = "default") -> None:
         """Make the scenes of these numbers."""
         if not isinstance(kind, str) or kind not in ("alcove", "course"):
-            raise _eeruf.ArgumentError(f'kind = {kind!r}; expected "alcove" or "course"')
+            raise _eeruf.EerufError(f'kind = {kind!r}; expected "alcove" or "course"')
         # A range longer than 2**63 has no length.
         ends = (numbers[0], numbers[-1]) if isinstance(numbers, range) and numbers else (0,)
         if not isinstance(numbers, range) or not 0 <= min(ends) <= max(ends) < 2**62:
-            raise _eeruf.ArgumentError(f"numbers = {numbers!r:.60}; expected a range of numbers from 0 to 2**62 - 1")
+            raise _eeruf.EerufError(f"numbers = {numbers!r:.60}; expected a range of numbers from 0 to 2**62 - 1")
         # Errors in the effects come at once.
         _eeruf._alcove(0, physics)
         self.kind, self.numbers, self.physics = kind, numbers, physics
@@ -149,7 +108,7 @@ class Scenes:
         return f"Scenes({self.kind!r}, {self.numbers!r}, {self.physics!r})"
 
 
-def alcoves(first: int = FIRST, n: int = 200, *, physics: _Physics = "default") -> Scenes:
+def alcoves(first: int = _FIRST, n: int = 200, *, physics: _Physics = "default") -> Scenes:
     """Return the alcoves of Set I as scenes with the robot in place; a scene's ``seed`` is its number.
 
     ``eeruf.sim.simulate`` reads in one exactly what :func:`set_one` reads by the same method; but for ``multi_echo``, for which that
@@ -161,7 +120,7 @@ def alcoves(first: int = FIRST, n: int = 200, *, physics: _Physics = "default") 
         physics: as the argument of ``eeruf.sim.Scene``.
 
     Raises:
-        ArgumentError: a number is below 0, or there are no such effects.
+        EerufError: a number is below 0, or there are no such effects.
 
     Example:
         >>> from eeruf import experiments, sim
@@ -175,7 +134,7 @@ def alcoves(first: int = FIRST, n: int = 200, *, physics: _Physics = "default") 
     return Scenes("alcove", _numbers(first, n), physics)
 
 
-def courses(first: int = FIRST, n: int = 100, *, physics: _Physics = "default") -> Scenes:
+def courses(first: int = _FIRST, n: int = 100, *, physics: _Physics = "default") -> Scenes:
     """Return the courses of Set II as scenes with the robot at the start; a scene's ``seed`` is its number.
 
     Drive in one with ``eeruf.sim.Simulation``. Sound is followed for two bounces at walls and poles, where :func:`set_two` follows
@@ -187,7 +146,7 @@ def courses(first: int = FIRST, n: int = 100, *, physics: _Physics = "default") 
         physics: as the argument of ``eeruf.sim.Scene``.
 
     Raises:
-        ArgumentError: a number is below 0, or there are no such effects.
+        EerufError: a number is below 0, or there are no such effects.
 
     Example:
         >>> from eeruf import experiments
@@ -200,7 +159,7 @@ def courses(first: int = FIRST, n: int = 100, *, physics: _Physics = "default") 
 
 def rooms(
     ring: str | PathLike[str],
-    first: int = FIRST,
+    first: int = _FIRST,
     n: int = 6,
     *,
     kind: _RoomKind = "office",
@@ -222,7 +181,7 @@ def rooms(
         height: as the argument of ``eeruf.sim.Scene``.
 
     Raises:
-        ArgumentError: a number is below 0, the file cannot be read, or there are no such rooms or effects.
+        EerufError: a number is below 0, the file cannot be read, or there are no such rooms or effects.
 
     Example:
         >>> import pathlib, tempfile
@@ -254,7 +213,7 @@ def recommend(
         rooms: scenes of your own by their names, in each of which the ring stands where the first robot does; by default rooms of
             eight kinds.
         places: rooms of each kind, 1 to 1,000.
-        first: the number of the first room of each kind; ways are chosen on numbers below 2,000, and reported from :data:`FIRST` on.
+        first: the number of the first room of each kind; ways are chosen on numbers below 2,000, and reported from 20,000 on.
         driving: whether the robot drives.
         wrong: the largest share of foreign sound in what is believed, of a way that is recommended.
         cost: whether to say what each kind of way costs, as ``--cost`` does; takes minutes, not with ``rooms``.
@@ -267,7 +226,7 @@ def recommend(
         the file names.
 
     Raises:
-        ArgumentError: a number is out of range, or the file cannot be read or does not say where its sensors are.
+        EerufError: a number is out of range, or the file cannot be read or does not say where its sensors are.
 
     Example:
         >>> import pathlib, tempfile
@@ -298,7 +257,7 @@ def recommend(
 def _numbers(first: int, n: int) -> range:
     for name, value in (("first", first), ("n", n)):
         if not _is_whole(value) or value < 0:
-            raise _eeruf.ArgumentError(f"{name} = {value!r:.60}; expected a whole number from 0 on")
+            raise _eeruf.EerufError(f"{name} = {value!r:.60}; expected a whole number from 0 on")
     return range(operator.index(first), operator.index(first) + operator.index(n))
 
 
@@ -313,9 +272,9 @@ def _is_whole(value: object) -> bool:
 def _checked(first: int, seeds: int, tune: bool) -> None:
     """Refuse to tune on seeds for reporting."""
     # A non-number is refused elsewhere.
-    if tune and _is_whole(first) and _is_whole(seeds) and operator.index(first) + operator.index(seeds) > FIRST:
-        raise _eeruf.ExperimentError(
-            f"seeds up to {first + seeds - 1} with tune=True; expected seeds below {FIRST}, such as first=0: "
+    if tune and _is_whole(first) and _is_whole(seeds) and operator.index(first) + operator.index(seeds) > _FIRST:
+        raise _eeruf.EerufError(
+            f"seeds up to {first + seeds - 1} with tune=True; expected seeds below {_FIRST}, such as first=0: "
             "figures are reported on those from there on"
         )
 
@@ -325,7 +284,7 @@ def set_one(
     *,
     readings: int = 8000,
     methods: Sequence[Method] | None = None,
-    first: int = FIRST,
+    first: int = _FIRST,
     physics: _Physics = "default",
     tune: bool = False,
     progress: _Progress = None,
@@ -340,15 +299,15 @@ def set_one(
         methods: names of ``eeruf.sim.METHODS`` and ``eeruf.sim.Method``; by default all but those that fire as sketches and modules do.
         first: the first alcove's number.
         physics: as the argument of ``eeruf.sim.Scene``.
-        tune: whether parameters are chosen by the result. Seeds from :data:`FIRST` on are then refused: they are for reports.
+        tune: whether parameters are chosen by the result. Seeds from 20,000 on are then refused: they are for reports.
         progress: True for a bar (tqdm if it is installed), or a callable that takes the share done and a text.
 
     Returns:
         The figures of each method, which do not depend on the number of threads.
 
     Raises:
-        ArgumentError: a number is out of range, or there is no such method.
-        ExperimentError: there are no methods, two of one label, or ``tune`` with a seed for reports.
+        EerufError: a number is out of range, or there is no such method; there are no methods, two of one label, or ``tune``
+            with a seed for reports.
 
     Example:
         >>> import eeruf
@@ -370,7 +329,7 @@ def set_two(
     speed_m_s: float = 1.0,
     odometry: bool = True,
     t_delta_us: int | None = None,
-    first: int = FIRST,
+    first: int = _FIRST,
     pilot: _Pilot = "own",
     odometry_noise: bool = True,
     bodies: bool = False,
@@ -401,7 +360,7 @@ def set_two(
         bodies: whether robots have bodies: the platform its square, with the ring on its edge, the second robot a disc, which is
             then an obstacle to sound and to the platform. The pilots were tuned without.
         physics: as the argument of ``eeruf.sim.Scene``.
-        tune: whether parameters are chosen by the result. Seeds from :data:`FIRST` on are then refused: they are for reports.
+        tune: whether parameters are chosen by the result. Seeds from 20,000 on are then refused: they are for reports.
         progress: True for a bar (tqdm if it is installed), or a callable that takes the share done and a text.
 
     Returns:
@@ -409,8 +368,8 @@ def set_two(
         of threads.
 
     Raises:
-        ArgumentError: a number is out of range, or there is no such method.
-        ExperimentError: there are no methods, two of one label, ``tune`` with a seed for reports, or the second robot stands where it cannot.
+        EerufError: a number is out of range, or there is no such method; there are no methods, two of one label, ``tune`` with
+            a seed for reports, or the second robot stands where it cannot.
 
     Example:
         >>> import eeruf
@@ -431,7 +390,7 @@ def set_three(
     *,
     methods: Sequence[Method] | None = None,
     periods: int = 40,
-    first: int = FIRST,
+    first: int = _FIRST,
     physics: _Physics = "default",
     height: Literal["flat", "room"] | dict[str, object] = "flat",
     tune: bool = False,
@@ -450,15 +409,15 @@ def set_three(
         first: the first placing's number.
         physics: as the argument of ``eeruf.sim.Scene``.
         height: as the argument of ``eeruf.sim.Scene``.
-        tune: whether parameters are chosen by the result. Seeds from :data:`FIRST` on are then refused: they are for reports.
+        tune: whether parameters are chosen by the result. Seeds from 20,000 on are then refused: they are for reports.
         progress: True for a bar (tqdm if it is installed), or a callable that takes the share done and a text.
 
     Returns:
         The figures of each method, which do not depend on the number of threads.
 
     Raises:
-        ArgumentError: a number is out of range, or there is no such method.
-        ExperimentError: there are no methods, two of one label, or ``tune`` with a seed for reports.
+        EerufError: a number is out of range, or there is no such method; there are no methods, two of one label, or ``tune``
+            with a seed for reports.
 
     Example:
         >>> import eeruf
@@ -472,14 +431,14 @@ def set_three(
 
 
 def speed_sweep(
-    speeds_m_s: Sequence[float] = SPEEDS_M_S,
+    speeds_m_s: Sequence[float] = _SPEEDS_M_S,
     *,
     seeds: int = 100,
     methods: Sequence[Method] | None = None,
     second_robot: _Corner = None,
     odometry: bool = True,
     t_delta_us: int | None = None,
-    first: int = FIRST,
+    first: int = _FIRST,
     pilot: _Pilot = "own",
     odometry_noise: bool = True,
     bodies: bool = False,
@@ -508,8 +467,8 @@ def speed_sweep(
         What came of it at each speed, and by method the highest speed at which 95 % of the courses are finished.
 
     Raises:
-        ArgumentError: a number is out of range, or there is no such method.
-        ExperimentError: there are no methods, two of one label, ``tune`` with a seed for reports, or the second robot stands where it cannot.
+        EerufError: a number is out of range, or there is no such method; there are no methods, two of one label, ``tune`` with
+            a seed for reports, or the second robot stands where it cannot.
 
     Example:
         >>> import eeruf

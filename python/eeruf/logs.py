@@ -7,7 +7,7 @@ docs/how-to/logs.md says what is read. A log is a path, a file object, or whatev
 Example:
     >>> import eeruf
     >>> log = eeruf.logs.Firings.of(sensor=[0, 1], fired_us=[0, 500], period=[0, 0], phase=[0, 0], t_echo_us=[7000.0, 8000.0])
-    >>> eeruf.diagnose(log).sender.tolist()  # two firings prove nothing
+    >>> eeruf.logs.diagnose(log).sender.tolist()  # two firings prove nothing
     [-1, -1]
 
 """
@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeVar, overload
 from eeruf import _eeruf
 from eeruf._columns import Columns as _Columns
 from eeruf._columns import column as _column
-from eeruf._eeruf import ArgumentError, LogError
+from eeruf._eeruf import EerufError, LogError
 from eeruf._opened import opened_log as _opened
 
 if TYPE_CHECKING:
@@ -64,24 +64,7 @@ if TYPE_CHECKING:
         judged: bool
 
 
-__all__ = [
-    "Agree",
-    "Checked",
-    "Crosstalk",
-    "Diagnosis",
-    "Firings",
-    "Judged",
-    "LogError",
-    "Ranges",
-    "Surveyed",
-    "blocks",
-    "check",
-    "diagnose",
-    "read_firings",
-    "read_log",
-    "replay",
-    "survey",
-]
+__all__ = ["Agree", "Firings", "Ranges", "blocks", "diagnose", "read_firings", "replay", "survey"]
 
 
 @dataclass(frozen=True)
@@ -174,7 +157,7 @@ class Ranges(_Columns):
             speed_of_sound: in m/s, above 0.
 
         Raises:
-            ArgumentError: no such speed.
+            EerufError: no such speed.
 
         Example:
             >>> import eeruf, pathlib, tempfile
@@ -191,7 +174,7 @@ class Ranges(_Columns):
         except (TypeError, ValueError, OverflowError):
             is_speed = False
         if not is_speed:
-            raise ArgumentError(f"speed_of_sound = {speed_of_sound!r:.60}; expected a number above 0")
+            raise EerufError(f"speed_of_sound = {speed_of_sound!r:.60}; expected a number above 0")
         seen = np.isfinite(self.range_m) & (self.range_m < self.max_range_m) & (self.range_m >= self.min_range_m)
         return np.where(seen, 2e6 * np.where(seen, self.range_m, 0.0) / speed_of_sound, np.nan)
 
@@ -261,7 +244,7 @@ class Judged(Ranges):
     Example:
         >>> import eeruf, io
         >>> text = chr(10).join(["front m", "1.20", "1.21", "0.40"])
-        >>> judged = eeruf.replay(io.StringIO(text), eeruf.logs.Agree(t_delta_us=500))
+        >>> judged = eeruf.logs.replay(io.StringIO(text), eeruf.logs.Agree(t_delta_us=500))
         >>> [eeruf.KINDS[kind] for kind in judged.kind]
         ['first', 'accepted', 'rejected']
 
@@ -326,7 +309,7 @@ class Firings(_Columns):
             sends: false where a sensor only listened.
 
         Raises:
-            ArgumentError: a column that is no array of such numbers with one dimension.
+            EerufError: a column that is no array of such numbers with one dimension.
 
         """
         import numpy as np
@@ -360,7 +343,7 @@ class Diagnosis:
     Example:
         >>> import eeruf
         >>> log = eeruf.logs.Firings.of(sensor=[0], fired_us=[0], period=[0], phase=[0], t_echo_us=[7000.0])
-        >>> eeruf.diagnose(log).faults
+        >>> eeruf.logs.diagnose(log).faults
         []
 
     """
@@ -385,7 +368,7 @@ class Surveyed:
     Example:
         >>> import eeruf
         >>> log = eeruf.logs.Firings.of(sensor=[0], fired_us=[0], period=[0], phase=[0], t_echo_us=[7000.0])
-        >>> eeruf.survey(log).conflicts
+        >>> eeruf.logs.survey(log).conflicts
         []
 
     """
@@ -432,7 +415,7 @@ def read_log(
 
     Raises:
         LogError: the log cannot be read, or holds no sensor.
-        ArgumentError: an argument is wrong.
+        EerufError: an argument is wrong.
 
     Example:
         >>> import eeruf, pathlib, tempfile
@@ -460,7 +443,7 @@ def check(log: object, **options: Unpack[_Options]) -> Checked:
 
     Raises:
         LogError: no ranges are found in it.
-        ArgumentError: an argument is wrong.
+        EerufError: an argument is wrong.
 
     Example:
         >>> import eeruf
@@ -504,13 +487,13 @@ def _as_log(log: object) -> _Log:
     elif isinstance(log, (np.ndarray, list, tuple)):
         table = np.asarray(log, dtype=float)
         if table.ndim not in (1, 2):
-            raise ArgumentError(f"log = {log!r:.60}; expected an array of one column per sensor")
+            raise EerufError(f"log = {log!r:.60}; expected an array of one column per sensor")
         log = {f"range {n + 1}": column for n, column in enumerate(table.reshape(len(table), -1).T)}
     if not isinstance(log, dict):
         return log  # type: ignore[return-value]
     lengths = {name: len(column) for name, column in log.items()}
     if len({*lengths.values()}) != 1:
-        raise ArgumentError(f"log has columns of {lengths} values; expected equal lengths")
+        raise EerufError(f"log has columns of {lengths} values; expected equal lengths")
     rows = [",".join(str(name) for name in log), *(",".join(map(str, row)) for row in zip(*log.values()))]
     return io.StringIO(chr(10).join(rows) + chr(10))
 
@@ -554,7 +537,7 @@ def blocks(
 
     Raises:
         LogError: the log cannot be read, or holds no sensor.
-        ArgumentError: an argument is wrong.
+        EerufError: an argument is wrong.
 
     Example:
         >>> import eeruf, io
@@ -580,7 +563,7 @@ def _each(of: type[_Block], reader: _eeruf._LogBlocks, opened: contextlib.ExitSt
 def _range_judge(judge: object) -> Agree | None:
     if judge is None or isinstance(judge, Agree):
         return judge
-    raise ArgumentError(f"judge = {judge!r:.60}; expected an eeruf.logs.Agree")
+    raise EerufError(f"judge = {judge!r:.60}; expected an eeruf.logs.Agree")
 
 
 def read_firings(log: _Log) -> Firings:
@@ -591,14 +574,14 @@ def read_firings(log: _Log) -> Firings:
 
     Raises:
         LogError: the log cannot be read.
-        ArgumentError: an argument is wrong.
+        EerufError: an argument is wrong.
 
     Example:
         >>> import eeruf, pathlib, tempfile
         >>> file = pathlib.Path(tempfile.mkdtemp()) / "log.csv"
         >>> lines = ["# clock: board", "sensor,fired_us,period,phase,t_echo_us", "0,15000,0,0,5872"]
         >>> size = file.write_text(chr(10).join(lines))
-        >>> log = eeruf.read_firings(file)
+        >>> log = eeruf.logs.read_firings(file)
         >>> log.clock, log.t_echo_us.tolist()
         ('board', [5872.0])
 
@@ -624,20 +607,20 @@ def replay(
 
     Raises:
         LogError: the log cannot be read.
-        ArgumentError: an argument is wrong.
+        EerufError: an argument is wrong.
 
     Example:
         >>> import eeruf, io
         >>> text = chr(10).join(["front m", "1.20", "1.21", "0.40"])
-        >>> [eeruf.KINDS[kind] for kind in eeruf.replay(io.StringIO(text), eeruf.logs.Agree(t_delta_us=500)).kind]
+        >>> [eeruf.KINDS[kind] for kind in eeruf.logs.replay(io.StringIO(text), eeruf.logs.Agree(t_delta_us=500)).kind]
         ['first', 'accepted', 'rejected']
 
     """
     if not isinstance(judge, Agree):
-        raise ArgumentError(f"judge = {judge!r:.60}; expected an eeruf.logs.Agree")
+        raise EerufError(f"judge = {judge!r:.60}; expected an eeruf.logs.Agree")
     if isinstance(log, Ranges):
         if out is not None:
-            raise ArgumentError(f"out = {out!r:.60}; expected None where ranges were read before: give their log")
+            raise EerufError(f"out = {out!r:.60}; expected None where ranges were read before: give their log")
         found = _eeruf._judge(log, judge, _speed_of_sound(options))
         return Judged(**{field.name: getattr(log, field.name) for field in fields(Ranges)}, **found)
     with _opened(log) as source:
@@ -648,7 +631,7 @@ def replay(
 def _speed_of_sound(options: _Options) -> float:
     for name, value in options.items():
         if name != "speed_of_sound":
-            raise ArgumentError(f"{name} = {value!r:.60}; expected it only where a log of ranges is read")
+            raise EerufError(f"{name} = {value!r:.60}; expected it only where a log of ranges is read")
     return options.get("speed_of_sound", 343.2)
 
 
@@ -669,7 +652,7 @@ def diagnose(log: Firings | _Log, *, tolerance_us: int = 75, max_travel_us: int 
 
     Raises:
         LogError: the log cannot be read.
-        ArgumentError: an argument is wrong.
+        EerufError: an argument is wrong.
 
     Example:
         >>> import eeruf, numpy as np
@@ -679,7 +662,7 @@ def diagnose(log: Firings | _Log, *, tolerance_us: int = 75, max_travel_us: int 
         >>> log = eeruf.logs.Firings.of(
         ...     sensor=r.sensor, fired_us=np.rint(1e6 * r.fired_s), period=r.period, phase=r.phase, t_echo_us=r.earliest_us
         ... )
-        >>> bool((eeruf.diagnose(log).sender >= 0).mean() > 0.3)
+        >>> bool((eeruf.logs.diagnose(log).sender >= 0).mean() > 0.3)
         True
 
     """
@@ -696,14 +679,14 @@ def survey(log: Firings | _Log, *, tolerance_us: int = 100, until_us: int = 15_0
 
     Raises:
         LogError: the log cannot be read.
-        ArgumentError: an argument is wrong.
+        EerufError: an argument is wrong.
 
     Example:
         >>> import eeruf
         >>> alone = eeruf.logs.Firings.of(
         ...     sensor=[0] * 9, fired_us=range(0, 900_000, 100_000), period=range(9), phase=[0] * 9, t_echo_us=[7000.0] * 9
         ... )
-        >>> eeruf.survey(alone).paths["travel_us"].tolist()
+        >>> eeruf.logs.survey(alone).paths["travel_us"].tolist()
         [7000.0]
 
     """

@@ -15,18 +15,4 @@ Example:
 
 from eeruf._eeruf import Himm, Vfh
 
-# As in eeruf itself.
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from eeruf._records import Steering
-else:
-
-    def __getattr__(name: str) -> object:
-        if name == "Steering":
-            from eeruf._records import Steering
-
-            return Steering
-        raise AttributeError(f"module 'eeruf.nav' has no attribute {name!r}")
-
-
-__all__ = ["Himm", "Steering", "Vfh"]
+__all__ = ["Himm", "Vfh"]

@@ -66,7 +66,7 @@ def read(url: str, **judging: Any) -> dict[str, Any]:
     for block in eeruf.logs.blocks(url, **judging):
         readings += len(block)
         metres += float(block.range_m.sum())
-        if isinstance(block, eeruf.logs.Judged):
+        if isinstance(block, eeruf.typing.Judged):
             accepted += int((block.kind == eeruf.KINDS.index("accepted")).sum())
     seconds = round(time.monotonic() - begun, 1)
     return {"readings": readings, "metres": metres, "accepted": accepted, "damage": block.damage, "seconds": seconds}

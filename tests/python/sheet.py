@@ -54,7 +54,7 @@ def figures() -> list[tuple[str, float, Callable[[Axes], object]]]:
         ("readings", 2.6, lambda ax: plot.readings(conventional, sensor=4, ax=ax)),
         ("methods, Set I", 2.2, lambda ax: plot.methods(one, ax=ax)),
         ("methods, Set II", 2.2, lambda ax: plot.methods(courses, figure="finished", ax=ax)),
-        ("speeds", 2.6, lambda ax: plot.speeds(sweep, ax=ax)),
+        ("speeds", 2.6, lambda ax: plot.methods(sweep, ax=ax)),
         ("course", 3.0, lambda ax: plot.course(courses, method="conventional", ax=ax)),
         ("animation", 3.0, a_picture_of_the_film),
     ]

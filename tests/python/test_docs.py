@@ -19,12 +19,18 @@ import pytest
 
 matplotlib.use("Agg")
 ROOT = Path(__file__).parents[2]
-MODULES = [eeruf, eeruf.experiments, eeruf.logs, eeruf.nav, eeruf.plot, eeruf.sim, eeruf.tables]
+MODULES = [eeruf, eeruf.experiments, eeruf.logs, eeruf.nav, eeruf.plot, eeruf.sim, eeruf.tables, eeruf.typing]
+
+
+def public(module: ModuleType) -> list[str]:
+    """The names of a module that users may rely on; of the types all."""
+    own = [name for name in vars(module) if name[0] != "_" and name not in ("annotations", "TYPE_CHECKING")]
+    return list(getattr(module, "__all__", own))
 
 
 def names(module: ModuleType) -> Iterator[tuple[str, Any]]:
     """The public functions and classes of a module, and the classes' methods and properties, compiled or not."""
-    for name in module.__all__:
+    for name in public(module):
         thing = getattr(module, name)
         if inspect.ismodule(thing) or not (callable(thing) or inspect.isclass(thing)):
             continue
@@ -50,6 +56,13 @@ def inherited(of: type) -> dict[str, Any]:
 
 # With the members of classes, in one order for all processes that run the tests.
 DOCUMENTED = dict(sorted((found for module in MODULES for found in names(module)), key=lambda found: found[0]))
+
+
+def test_there_are_few_names_to_learn() -> None:
+    learnt = [name for module in MODULES if module is not eeruf.typing for name in module.__all__]
+    # With the two of eeruf.envs, which needs Gymnasium.
+    assert len(learnt) + 2 <= 70
+    assert set(public(eeruf.typing)) >= {"AlcoveRun", "Violation", "is_kind"}
 
 
 def test_the_package_exports_what_the_design_names() -> None:

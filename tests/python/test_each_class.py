@@ -21,6 +21,7 @@ from eeruf import envs, experiments, logs, nav, sim, tables
 
 SOURCES = Path(__file__).parents[2] / "python/eeruf"
 MODULES = (eeruf, sim, experiments, logs, nav, envs)
+PUBLIC = [getattr(module, name) for module in MODULES for name in module.__all__] + list(vars(eeruf.typing).values())
 ROBOT = sim.Robot((0, 0, 1.57), 8, 0.26, 0.3)
 ROOM = sim.Scene([[5, 2, -5, 2]], robots=[ROBOT])
 
@@ -51,7 +52,7 @@ def each() -> dict[str, Any]:
         waits,
         waits.all(),
         eeruf.Adaptation([tables.TABLE_I_D], 500),
-        eeruf.Blind(3, 20),
+        eeruf.typing.Blind(3, 20),
         eeruf.EchoFilter(4, 500),
         eeruf.Needs(sensors=8, module="hc-sr04"),
         eeruf.design(4, 999, 15_000, 36_000, certificate=True),
@@ -62,7 +63,7 @@ def each() -> dict[str, Any]:
         ring.state(0),
         batch,
         batch.state,
-        sim.FiredReading(eeruf.EchoFilter(1, 500).push(0, 9_000), (9_000, 11_000), 0.5, levels_db=(12.5, 3.0)),
+        eeruf.typing.FiredReading(eeruf.EchoFilter(1, 500).push(0, 9_000), (9_000, 11_000), 0.5, levels_db=(12.5, 3.0)),
         sim.Material(0.5),
         sim.Method("flow", label="mine"),
         sim.Noise(),
@@ -95,10 +96,10 @@ def each() -> dict[str, Any]:
         logs.Agree(500),
         ranges.crosstalk,
         firings,
-        eeruf.diagnose(firings),
-        eeruf.survey(firings),
+        eeruf.logs.diagnose(firings),
+        eeruf.logs.survey(firings),
         ranges,
-        eeruf.replay(ranges, logs.Agree(500)),
+        eeruf.logs.replay(ranges, logs.Agree(500)),
         eeruf.check(ranges),
         nav.Himm(),
         nav.Vfh(),
@@ -111,10 +112,9 @@ def each() -> dict[str, Any]:
 
 def public_classes() -> set[str]:
     """All that users can hold: no errors, and no bases."""
-    named = {name: getattr(module, name) for module in MODULES for name in module.__all__}
     return {
-        name
-        for name, kind in named.items()
+        kind.__name__
+        for kind in PUBLIC
         if isinstance(kind, type) and not issubclass(kind, (Exception, Warning)) and kind.__module__.startswith("eeruf")
     }
 
@@ -126,7 +126,7 @@ USES: dict[str, Callable[[Any], object]] = {
     "CourseEnv": lambda of: (of.reset(seed=1), of.step(of.action_space.sample())),
     "CourseVectorEnv": lambda of: (of.reset(seed=1), of.step(of.action_space.sample())),
     "EchoFilter": lambda of: of.push_many(np.full((9, of.sensors), 9_000.0)),
-    "Firings": lambda of: (eeruf.diagnose(of), eeruf.survey(of)),
+    "Firings": lambda of: (eeruf.logs.diagnose(of), eeruf.logs.survey(of)),
     "ReadingBlocks": lambda of: next(of),
     "Ring": lambda of: of.poll(of.next_deadline_us),
     "Robot": lambda of: sim.simulate(sim.Scene([[5, 2, -5, 2]], robots=[of]), periods=3),
@@ -336,7 +336,7 @@ def test_codes_compare_with_names() -> None:
     kinds = eeruf.EchoFilter(1, 500).push_many([[9_000.0], [9_000.0]])
     assert (kinds == "accepted").tolist() == [[False], [True]]
     assert type(kinds == "accepted") is np.ndarray and kinds.dtype == np.int8
-    with pytest.raises(eeruf.ArgumentError, match="compared with 'acepted'; expected \"first\" or "):
+    with pytest.raises(eeruf.EerufError, match="compared with 'acepted'; expected \"first\" or "):
         _ = kinds == "acepted"
 
 
@@ -359,7 +359,7 @@ def test_codes_compare_with_names() -> None:
             "1.54 at most; .*; likely metres or milliseconds",
         ),
         (
-            lambda: eeruf.diagnose(logs.Firings.of(sensor=[0], fired_us=[0], period=[0], phase=[0], t_echo_us=[1.5])),
+            lambda: eeruf.logs.diagnose(logs.Firings.of(sensor=[0], fired_us=[0], period=[0], phase=[0], t_echo_us=[1.5])),
             "t_echo_us = 1.5 at most; .*; likely metres",
         ),
         (
@@ -369,7 +369,7 @@ def test_codes_compare_with_names() -> None:
     ],
 )
 def test_another_unit_is_refused_with_the_likely_one(call: Callable[[], Any], message: str) -> None:
-    with pytest.raises(eeruf.ArgumentError, match=message):
+    with pytest.raises(eeruf.EerufError, match=message):
         call()
 
 

@@ -25,15 +25,15 @@ class Paper:
         assert isinstance(t_delta_us, int)
         self.filter = eeruf.EchoFilter(robot.sensors, t_delta_us)
 
-    def __call__(self, firing: sim.FiredReading) -> eeruf.Reading:
+    def __call__(self, firing: eeruf.typing.FiredReading) -> eeruf.Reading:
         return self.filter.push_echoes(firing.reading.sensor, firing.t_echoes_us, firing.expected_change_us)
 
 
-def believe_all(firing: sim.FiredReading) -> Any:
+def believe_all(firing: eeruf.typing.FiredReading) -> Any:
     return ("accepted", firing.t_echoes_us[0]) if firing.t_echoes_us else ("clear", None)
 
 
-def believing(robot: sim.Robot) -> Callable[[sim.FiredReading], Any]:
+def believing(robot: sim.Robot) -> Callable[[eeruf.typing.FiredReading], Any]:
     return believe_all
 
 
@@ -134,7 +134,7 @@ def test_robots_of_one_make_fire_as_rings_are_fired_today() -> None:
     ],
 )
 def test_what_a_method_does_not_take_is_refused(arguments: dict[str, Any], message: str) -> None:
-    with pytest.raises(eeruf.ArgumentError, match=message):
+    with pytest.raises(eeruf.EerufError, match=message):
         ANY.sim.Method(**arguments)
 
 
@@ -142,7 +142,7 @@ def test_errors_of_own_code_come_out_of_experiments() -> None:
     class Weary(Exception):
         pass
 
-    def tired(firing: sim.FiredReading) -> Any:
+    def tired(firing: eeruf.typing.FiredReading) -> Any:
         raise Weary("for today")
 
     def unmade(robot: sim.Robot) -> Any:
@@ -160,13 +160,13 @@ def test_errors_of_own_code_come_out_of_experiments() -> None:
             run()
     with pytest.raises(Weary, match="never begun"):
         experiments.set_one(2, readings=80, methods=[sim.Method("eeruf", make_firing=unmade)])
-    with pytest.raises(eeruf.ArgumentError, match="what make_filter returned = 3; expected a callable"):
+    with pytest.raises(eeruf.EerufError, match="what make_filter returned = 3; expected a callable"):
         ANY.sim.simulate(SCENE, ANY.sim.Method(make_filter=lambda robot: 3), 10)
-    with pytest.raises(eeruf.SceneError, match="12"):
+    with pytest.raises(eeruf.EerufError, match="12"):
         sim.simulate(SCENE, sim.Method("eeruf", schedule=eeruf.tables.TABLE_I_D))
-    with pytest.raises(eeruf.ExperimentError, match="12"):
+    with pytest.raises(eeruf.EerufError, match="12"):
         experiments.set_one(1, methods=[sim.Method("eeruf", schedule=eeruf.tables.TABLE_I_D)])
-    with pytest.raises(eeruf.ExperimentError, match="two methods `eeruf`; expected another name"):
+    with pytest.raises(eeruf.EerufError, match="two methods `eeruf`; expected another name"):
         experiments.set_one(1, methods=["eeruf", sim.Method("eeruf")])
 
 
@@ -197,7 +197,7 @@ def test_scenes_are_those_of_the_experiments() -> None:
     assert course.robots[0].odometry and course.robots[0].t_delta_us == 150
     with pytest.raises(IndexError):
         scenes[5]
-    with pytest.raises(eeruf.ArgumentError, match="n = -1; expected"):
+    with pytest.raises(eeruf.EerufError, match="n = -1; expected"):
         experiments.alcoves(0, -1)
 
 
@@ -217,9 +217,9 @@ def test_concat_of_parts_equals_the_undivided_run() -> None:
             ([parts[0], 3], "tables: a .* and a int"),
         ]:
             if message is not None:
-                with pytest.raises(eeruf.ArgumentError, match=message):
+                with pytest.raises(eeruf.EerufError, match=message):
                     experiments.concat(broken)
-    with pytest.raises(eeruf.ArgumentError, match="tables: periods = 50 and 10; expected parts of one experiment"):
+    with pytest.raises(eeruf.EerufError, match="tables: periods = 50 and 10; expected parts of one experiment"):
         experiments.concat([one(1), experiments.set_one(1, first=20_001, readings=80, methods=methods)])
 
 
@@ -235,17 +235,17 @@ def test_compare_pairs_by_seed_and_covers_what_it_claims() -> None:
     assert found["wrong_of_all"].more == 0 and found["wrong_of_all"].p_sign == 2 / 2**12
     same = experiments.compare(one, one)["wrong_of_all"]
     assert (same.mean_95, same.median_95, same.p_sign) == ((0, 0), (0, 0), 1)
-    with pytest.raises(eeruf.ArgumentError, match="seed 20011 and 0 others are of one method only"):
+    with pytest.raises(eeruf.EerufError, match="seed 20011 and 0 others are of one method only"):
         experiments.compare(one, other[:-1])
-    with pytest.raises(eeruf.ArgumentError, match=r"one = .*; expected runs of one method"):
+    with pytest.raises(eeruf.EerufError, match=r"one = .*; expected runs of one method"):
         ANY.experiments.compare(table, other)
 
 
 @pytest.mark.parametrize("run", [experiments.set_one, experiments.set_two, experiments.set_three])
 def test_reporting_seeds_refuse_to_tune(run: Any) -> None:
-    with pytest.raises(eeruf.ExperimentError, match="seeds up to 20000 with tune=True; expected seeds below 20000"):
+    with pytest.raises(eeruf.EerufError, match="seeds up to 20000 with tune=True; expected seeds below 20000"):
         run(1, tune=True)
-    with pytest.raises(eeruf.ExperimentError, match="seeds up to 20001"):
+    with pytest.raises(eeruf.EerufError, match="seeds up to 20001"):
         run(3, first=19_999, tune=True)
     assert run(1, first=0, tune=True, methods=["sequential"]).first == 0
 
@@ -261,7 +261,7 @@ def test_one_process_dask_and_parts_give_equal_tables() -> None:
     assert experiments.concat(there) == experiments.concat([run(first) for first in firsts]) == whole
 
 
-def part(first: int, methods: Any) -> experiments.SetOne:
+def part(first: int, methods: Any) -> eeruf.typing.SetOne:
     return experiments.set_one(2, first=first, readings=400, methods=list(methods))
 
 

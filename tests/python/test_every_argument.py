@@ -107,18 +107,18 @@ RIGHT_OF: dict[str, dict[str, Any]] = {
     **{key: {"window_us": 36000} for key in ("eeruf.Ring", "eeruf.Ring.flow")},
     "eeruf.sim.Readings.from_arrays": {"sensor": [0], "fired_s": [0.0], "t_echo_us": [5_000.0]},
     "eeruf.sim.Robot": {"sensors": 8, "spacing_rad": 0.26, "radius_m": 0.3},
-    "eeruf.experiments.Scenes": {"kind": "alcove"},
+    "eeruf.typing.Scenes": {"kind": "alcove"},
     "eeruf.experiments.recommend": {"ring": RINGS / "hc-sr04-8.toml"},
     "eeruf.experiments.rooms": {"ring": RINGS / "hc-sr04-8.toml"},
     **{
         name: {"log": FIRINGS}
-        for name in ("eeruf.diagnose", "eeruf.logs.diagnose", "eeruf.survey", "eeruf.logs.survey")
+        for name in ("eeruf.logs.diagnose", "eeruf.logs.survey")
     },
     "Himm().clear": {"sensor": (0, 0, 0)},
     "Himm().echo": {"sensor": (0, 0, 0)},
 }
 # Guards, which answer for any value.
-ANSWER = {"eeruf.is_kind", "eeruf.sim.is_method"}
+ANSWER = {"eeruf.typing.is_kind", "eeruf.typing.is_method"}
 
 
 def callables() -> Iterator[tuple[str, Any]]:

@@ -221,9 +221,9 @@ def test_a_ring_by_flow_has_no_schedule_to_change() -> None:
         lambda: setattr(ring, "audible_us", 100_000),
         lambda: ring.change_schedule(eeruf.tables.TABLE_I_D),
     ):
-        with pytest.raises(eeruf.RingError, match=r"of a ring by flow; expected a ring by an eeruf\.Schedule"):
+        with pytest.raises(eeruf.EerufError, match=r"of a ring by flow; expected a ring by an eeruf\.Schedule"):
             wrong()
-    with pytest.raises(eeruf.RingError, match=r"moving of a ring by a schedule; expected a ring by eeruf\.Ring\.flow"):
+    with pytest.raises(eeruf.EerufError, match=r"moving of a ring by a schedule; expected a ring by eeruf\.Ring\.flow"):
         Ring(eeruf.tables.TABLE_I_D, 500, window_us=36_000).moving(1.0, 0.0, 0)
 
 
@@ -245,30 +245,30 @@ def test_what_is_gone_is_answered_by_name() -> None:
 
 def test_each_error_says_what_is_expected() -> None:
     for make, error, text in (
-        (lambda: ANY.Ring.flow(8, {"rest": 1}, window_us=9_000), eeruf.ArgumentError, "no setting rest of flow"),
-        (lambda: ANY.Ring.flow(8, {"seed": 0}, window_us=9_000), eeruf.ArgumentError, "seed = 0; expected"),
-        (lambda: ANY.Ring.flow(8, {"top_speed_m_s": 66}, window_us=9_000), eeruf.ArgumentError, "top_speed_m_s = 66"),
+        (lambda: ANY.Ring.flow(8, {"rest": 1}, window_us=9_000), eeruf.EerufError, "no setting rest of flow"),
+        (lambda: ANY.Ring.flow(8, {"seed": 0}, window_us=9_000), eeruf.EerufError, "seed = 0; expected"),
+        (lambda: ANY.Ring.flow(8, {"top_speed_m_s": 66}, window_us=9_000), eeruf.EerufError, "top_speed_m_s = 66"),
         (
             lambda: ANY.Ring.flow(8, "quick", window_us=9_000),
-            eeruf.ArgumentError,
+            eeruf.EerufError,
             "settings = 'quick'; expected a dict",
         ),
         (
             lambda: ANY.Ring.flow(8, {"votes": 3}, window_us=9_000),
-            eeruf.ArgumentError,
+            eeruf.EerufError,
             'votes = 3; expected "by_motion"',
         ),
-        (lambda: ANY.Ring.flow(8, {"alone": 1}, window_us=9_000), eeruf.ArgumentError, "alone = 1; expected True or"),
-        (lambda: Ring.flow(8, {"least_us": 40_000}, window_us=WINDOW_US), eeruf.RingError, "least"),
-        (lambda: Ring.flow(8, {"hold": 0}, window_us=WINDOW_US), eeruf.RingError, "hold"),
+        (lambda: ANY.Ring.flow(8, {"alone": 1}, window_us=9_000), eeruf.EerufError, "alone = 1; expected True or"),
+        (lambda: Ring.flow(8, {"least_us": 40_000}, window_us=WINDOW_US), eeruf.EerufError, "least"),
+        (lambda: Ring.flow(8, {"hold": 0}, window_us=WINDOW_US), eeruf.EerufError, "hold"),
         (
             lambda: Ring.flow(8, {"most_us": 30_000}, window_us=WINDOW_US, reach_us=30_000),
-            eeruf.ArgumentError,
+            eeruf.EerufError,
             "reach_us = 30000; expected none beside the setting most_us",
         ),
-        (lambda: Ring.flow(8, window_us=9_000, blanking_us=9_000), eeruf.RingError, "blanking"),
-        (lambda: Ring.flow(65, window_us=WINDOW_US), eeruf.ArgumentError, "sensors = 65; expected"),
-        (lambda: Ring.flow(8, window_us=WINDOW_US).moving(200.0, 0.0, 0), eeruf.ArgumentError, "speed_m_s = 200"),
+        (lambda: Ring.flow(8, window_us=9_000, blanking_us=9_000), eeruf.EerufError, "blanking"),
+        (lambda: Ring.flow(65, window_us=WINDOW_US), eeruf.EerufError, "sensors = 65; expected"),
+        (lambda: Ring.flow(8, window_us=WINDOW_US).moving(200.0, 0.0, 0), eeruf.EerufError, "speed_m_s = 200"),
     ):
         with pytest.raises(error, match=text):
             make()

@@ -143,5 +143,5 @@ def test_a_blocked_robot_stands_and_looks_around() -> None:
     ],
 )
 def test_what_is_wrong_with_an_argument_of_a_grid_is_said(call: Any, message: str) -> None:
-    with pytest.raises(eeruf.ArgumentError, match=message):
+    with pytest.raises(eeruf.EerufError, match=message):
         call()

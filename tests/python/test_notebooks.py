@@ -37,10 +37,10 @@ wrong, steps = conventional.is_wrong()[one], np.abs(np.diff(conventional.t_echo_
 assert wrong.mean() > 0.9 and (steps[wrong[1:]] < 500).mean() > 0.95
 one = alternating.sensor == 1
 believed = alternating.is_accepted[one]
-assert (believed & (alternating.cause[one] != sim.CAUSES.index("own"))).sum() == 0 < believed.sum()
+assert (believed & (alternating.cause[one] != eeruf.typing.CAUSES.index("own"))).sum() == 0 < believed.sum()
 between = alternating.fired_s[one][believed]
 assert 2.0 < between.min() and between.max() < 60.0 and abs(alternating.reference_us[one][0] - 8_000) < 100
-foreign = (alternating.cause[one] == sim.CAUSES.index("crosstalk")) & ~believed
+foreign = (alternating.cause[one] == eeruf.typing.CAUSES.index("crosstalk")) & ~believed
 assert foreign.mean() > 0.2 and np.abs(np.diff(alternating.t_echo_us[one][foreign])).max() > 1_000
 assert len(paths) > 20
 """,

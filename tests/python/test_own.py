@@ -27,7 +27,7 @@ def same(one: sim.Readings, other: sim.Readings) -> bool:
     )
 
 
-def paper(echoes: int = 1) -> Callable[[sim.FiredReading], eeruf.Reading]:
+def paper(echoes: int = 1) -> Callable[[eeruf.typing.FiredReading], eeruf.Reading]:
     mine = eeruf.EchoFilter(8, 500, echoes=echoes)
     return lambda firing: mine.push_echoes(firing.reading.sensor, firing.t_echoes_us, firing.expected_change_us)
 
@@ -70,9 +70,9 @@ def level_and_amplitude(far: float) -> tuple[float, float]:
     """The only level at which an echo of a wall so far off is heard, and the amplitude of its path."""
     robot = sim.Robot((0, 0, math.pi / 2), sensors=1, spacing_rad=0.1, radius_m=0.0)
     room = sim.Scene([[5, far, -5, far]], robots=[robot], noise=False)
-    seen: list[sim.FiredReading] = []
+    seen: list[eeruf.typing.FiredReading] = []
 
-    def believe(firing: sim.FiredReading) -> eeruf.Reading:
+    def believe(firing: eeruf.typing.FiredReading) -> eeruf.Reading:
         seen.append(firing)
         return firing.reading
 
@@ -89,9 +89,9 @@ def test_a_filter_sees_the_level_of_an_echo_as_its_path_has_it() -> None:
 
 
 def test_a_filter_sees_its_sensor_and_its_verdict_is_kept() -> None:
-    seen: list[sim.FiredReading] = []
+    seen: list[eeruf.typing.FiredReading] = []
 
-    def late(firing: sim.FiredReading) -> Any:
+    def late(firing: eeruf.typing.FiredReading) -> Any:
         seen.append(firing)
         return ("accepted", firing.t_echoes_us[0] + 2.4) if firing.t_echoes_us else ("clear", None)
 
@@ -105,7 +105,7 @@ def test_a_filter_sees_its_sensor_and_its_verdict_is_kept() -> None:
     firsts = [firing.t_echoes_us[0] if firing.t_echoes_us else math.nan for firing in seen]
     assert np.array_equal(firsts, own.earliest_us, equal_nan=True)
     assert pickle.loads(pickle.dumps(seen[0])) == seen[0]
-    assert eval(repr(seen[0]), {"FiredReading": sim.FiredReading, "Reading": eeruf.Reading}) == seen[0]
+    assert eval(repr(seen[0]), {"FiredReading": eeruf.typing.FiredReading, "Reading": eeruf.Reading}) == seen[0]
     plain = seen[0].to_dict()
     assert plain["t_echoes_us"] == list(seen[0].t_echoes_us)
     assert plain["reading"] == seen[0].reading.to_dict()
@@ -133,22 +133,22 @@ def test_others_than_the_first_robot_are_named_by_number() -> None:
     ],
 )
 def test_what_a_filter_must_not_return_is_said(returned: Any, message: str) -> None:
-    with pytest.raises(eeruf.ArgumentError, match=message):
+    with pytest.raises(eeruf.EerufError, match=message):
         sim.Simulation(scene(), filter=lambda firing: returned).step(0.5)
 
 
 @pytest.mark.parametrize(
     ("returned", "error", "message"),
     [
-        (60_000, eeruf.ArgumentError, "what firing returned = 60000; expected .length_us"),
-        ((60_000,), eeruf.ArgumentError, "what firing returned = .60000,.; expected"),
-        ((60_000, [3]), eeruf.ArgumentError, "what firing returned = .60000, .3..; expected"),
-        ((60_000, [(0.5, 3)]), eeruf.ArgumentError, "t_fire_us of firing 0 = 0.5; expected a whole number"),
-        ((60_000, [(0, 64)]), eeruf.ArgumentError, "sensor of firing 0 = 64; expected a whole number from 0 to 63"),
-        ((60_000, [], 8), eeruf.ArgumentError, "phase = 8; expected a whole number from 0 to 7"),
-        ((60_000, [(0, 8)]), eeruf.SimulationError, "at 0.000 s: the firing of robot 0: period 0 fires sensor 8"),
-        ((60_000, [(0, 1), (30_000, 1)]), eeruf.SimulationError, "fires sensor 1 at 30 ms, 30000 us after its last"),
-        ((0, []), eeruf.SimulationError, "period 0 lasts 0 us; expected 1 us to 268435.456 ms"),
+        (60_000, eeruf.EerufError, "what firing returned = 60000; expected .length_us"),
+        ((60_000,), eeruf.EerufError, "what firing returned = .60000,.; expected"),
+        ((60_000, [3]), eeruf.EerufError, "what firing returned = .60000, .3..; expected"),
+        ((60_000, [(0.5, 3)]), eeruf.EerufError, "t_fire_us of firing 0 = 0.5; expected a whole number"),
+        ((60_000, [(0, 64)]), eeruf.EerufError, "sensor of firing 0 = 64; expected a whole number from 0 to 63"),
+        ((60_000, [], 8), eeruf.EerufError, "phase = 8; expected a whole number from 0 to 7"),
+        ((60_000, [(0, 8)]), eeruf.EerufError, "at 0.000 s: the firing of robot 0: period 0 fires sensor 8"),
+        ((60_000, [(0, 1), (30_000, 1)]), eeruf.EerufError, "fires sensor 1 at 30 ms, 30000 us after its last"),
+        ((0, []), eeruf.EerufError, "period 0 lasts 0 us; expected 1 us to 268435.456 ms"),
     ],
 )
 def test_what_a_firing_must_not_return_is_said(returned: Any, error: Any, message: str) -> None:
@@ -160,11 +160,11 @@ def test_what_a_firing_must_not_return_is_said(returned: Any, error: Any, messag
 
 
 def test_what_is_not_a_callable_is_refused() -> None:
-    with pytest.raises(eeruf.ArgumentError, match="filter = 3; expected a callable, or a dict of callables by robot"):
+    with pytest.raises(eeruf.EerufError, match="filter = 3; expected a callable, or a dict of callables by robot"):
         ANY.sim.Simulation(scene(), filter=3)
-    with pytest.raises(eeruf.ArgumentError, match=r"firing\[0\] = 3; expected a callable"):
+    with pytest.raises(eeruf.EerufError, match=r"firing\[0\] = 3; expected a callable"):
         ANY.sim.Simulation(scene(), firing={0: 3})
-    with pytest.raises(eeruf.ArgumentError, match="robot of firing = 1; expected a whole number from 0 to 0"):
+    with pytest.raises(eeruf.EerufError, match="robot of firing = 1; expected a whole number from 0 to 0"):
         ANY.sim.Simulation(scene(), firing={1: print})
 
 
@@ -172,7 +172,7 @@ def test_errors_of_callables_leave_the_simulation_going() -> None:
     class Weary(Exception):
         pass
 
-    def weary(firing: sim.FiredReading) -> eeruf.Reading:
+    def weary(firing: eeruf.typing.FiredReading) -> eeruf.Reading:
         if firing.reading.period == 3 and firing.reading.sensor == 2:
             raise Weary("for today")
         return firing.reading
@@ -205,13 +205,13 @@ def test_a_callable_that_asks_its_own_simulation_is_refused(
 ) -> None:
     worlds: list[sim.Simulation] = []
 
-    def ask(firing: sim.FiredReading) -> eeruf.Reading:
+    def ask(firing: eeruf.typing.FiredReading) -> eeruf.Reading:
         assert "in a step" in repr(worlds[0])
         call(worlds[0])
         return firing.reading
 
     worlds.append(sim.Simulation(scene(), filter=ask))
-    with pytest.raises(eeruf.SimulationError, match="a simulation under way; expected its firing and its filter"):
+    with pytest.raises(eeruf.EerufError, match="a simulation under way; expected its firing and its filter"):
         worlds[0].step(0.5)
     assert worlds[0].time_s == 0.0
 
@@ -221,7 +221,7 @@ def test_a_simulation_whose_filter_holds_it_is_collected() -> None:
         def __init__(self) -> None:
             self.world = sim.Simulation(scene(), filter=self.judge)
 
-        def judge(self, firing: sim.FiredReading) -> eeruf.Reading:
+        def judge(self, firing: eeruf.typing.FiredReading) -> eeruf.Reading:
             return firing.reading
 
     mine = Mine()
@@ -241,16 +241,16 @@ def test_a_ring_changes_its_schedule_while_it_runs() -> None:
     world.step(0.5)
     assert len(world.step(2.4)) == pytest.approx(0.6 * before, rel=0.05)
     for schedule, error, message in [
-        (eeruf.tables.TABLE_I_D.scaled(1, 4), eeruf.SimulationError, "method eeruf: a listening window of 36 ms"),
-        (3, eeruf.ArgumentError, "schedule = 3; expected an eeruf.Schedule"),
+        (eeruf.tables.TABLE_I_D.scaled(1, 4), eeruf.EerufError, "method eeruf: a listening window of 36 ms"),
+        (3, eeruf.EerufError, "schedule = 3; expected an eeruf.Schedule"),
     ]:
         with pytest.raises(error, match=message):
             ANY.sim.Simulation.change_schedule(world, 0, schedule)
-    with pytest.raises(eeruf.SimulationError, match="robot 0: a schedule of 12 sensors; expected one of 8"):
+    with pytest.raises(eeruf.EerufError, match="robot 0: a schedule of 12 sensors; expected one of 8"):
         sim.Simulation(scene()).change_schedule(0, slow)
-    with pytest.raises(eeruf.SimulationError, match="robot 0 fires by dither or by its own firing"):
+    with pytest.raises(eeruf.EerufError, match="robot 0 fires by dither or by its own firing"):
         sim.Simulation(sim.Scene(ALCOVE, robots=[robot]), "dither").change_schedule(0, slow)
-    with pytest.raises(eeruf.ArgumentError, match="robot = 1; expected a whole number from 0 to 0"):
+    with pytest.raises(eeruf.EerufError, match="robot = 1; expected a whole number from 0 to 0"):
         world.change_schedule(1, slow)
 
 
@@ -263,5 +263,5 @@ def test_obstacles_move_between_steps() -> None:
     for x in (2.0, 1.5, 1.0, 2.5):
         world.change_scene(sim.Scene(walls, poles=[(x, 0, 0.1)], two_sided=[0]))
         assert world.step_to_reading(1.0).t_echo_us[0] * 343.2e-6 / 2 == pytest.approx(x - 0.1, abs=1e-3)
-    with pytest.raises(eeruf.ArgumentError, match="scene = 3; expected an"):
+    with pytest.raises(eeruf.EerufError, match="scene = 3; expected an"):
         ANY.sim.Simulation.change_scene(world, 3)

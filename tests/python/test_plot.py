@@ -40,9 +40,9 @@ def test_methods_are_drawn_worst_first_in_percent() -> None:
     spread = result.methods["conventional"].wrong_of_all
     assert spread is not None
     assert ax.patches[0].get_width() == pytest.approx(100 * spread.median)  # type: ignore[attr-defined]
-    with pytest.raises(eeruf.ArgumentError, match="figure = 'beauty'; expected one of age_ms"):
+    with pytest.raises(eeruf.EerufError, match="figure = 'beauty'; expected one of age_ms"):
         plot.methods(result, figure="beauty")
-    with pytest.raises(eeruf.ArgumentError, match=r"names = \['loud'\]; expected some of eeruf, conventional"):
+    with pytest.raises(eeruf.EerufError, match=r"names = \['loud'\]; expected some of eeruf, conventional"):
         plot.methods(result, names=["loud"])
 
 
@@ -81,9 +81,9 @@ def test_a_run_alone_is_drawn_and_other_values_are_refused() -> None:
         ({"method": "loud"}, "method = 'loud'; expected one of eeruf"),
         ({"course": 7}, "course = 7; expected 20000 to 20000"),
     ]:
-        with pytest.raises(eeruf.ArgumentError, match=message):
+        with pytest.raises(eeruf.EerufError, match=message):
             plot.course(found, **arguments)  # type: ignore[arg-type]
-    with pytest.raises(eeruf.ArgumentError, match="expected what eeruf"):
+    with pytest.raises(eeruf.EerufError, match="expected what eeruf"):
         plot.course({"methods": {}})  # type: ignore[arg-type]
 
 
@@ -120,20 +120,20 @@ def test_a_film_shows_sound_and_the_readings_that_come_of_it() -> None:
     # Nothing is on its way at first or last, two sounds are at times, and one sensor is right while the other is not.
     assert (dots[0], max(dots), dots[-1], len(discs)) == (2, 2, 0, 2)
     film._draw_was_started = True  # type: ignore[attr-defined]
-    with pytest.raises(eeruf.ArgumentError, match="no readings of 2 periods from there"):
+    with pytest.raises(eeruf.EerufError, match="no readings of 2 periods from there"):
         plot.animation(scene, sim.simulate(scene, "simultaneous", periods=4), first=7)
     elsewhere = sim.Scene.from_toml(eeruf.example("scenes/alcove.toml"))
-    with pytest.raises(eeruf.ArgumentError, match="expected their own scene"):
+    with pytest.raises(eeruf.EerufError, match="expected their own scene"):
         plot.animation(scene, sim.simulate(elsewhere, periods=4))
 
 
 def test_speeds_are_drawn_by_method() -> None:
     sweep = experiments.speed_sweep([0.75, 1.0], seeds=1, methods=["eeruf", "conventional"])
-    ax = plot.speeds(sweep)
+    ax = plot.methods(sweep)
     assert [line.get_label() for line in ax.lines] == ["eeruf", "conventional"]
     assert list(np.asarray(ax.lines[0].get_ydata())) == [100 * step.finished_of_all["eeruf"] for step in sweep.steps]
-    with pytest.raises(eeruf.ArgumentError, match="expected what eeruf"):
-        plot.speeds({"steps": []})  # type: ignore[arg-type]
+    with pytest.raises(eeruf.EerufError, match="expected what eeruf"):
+        plot.methods({"steps": []})  # type: ignore[arg-type]
 
 
 def test_every_figure_is_legible_on_a_dark_background() -> None:

@@ -97,7 +97,7 @@ def interrupted_soon() -> Iterator[None]:
     signal.signal(signal.SIGALRM, before)
 
 
-@pytest.mark.parametrize("ask", [eeruf.diagnose, eeruf.survey])
+@pytest.mark.parametrize("ask", [eeruf.logs.diagnose, eeruf.logs.survey])
 def test_a_question_about_a_log_that_was_ended_runs_on_nowhere(ask: Any, interrupted_soon: None) -> None:
     sensors, periods, chance = 64, 2_000, np.random.default_rng(1)
     sensor, period = np.tile(np.arange(sensors), periods), np.repeat(np.arange(periods), sensors)

@@ -30,11 +30,11 @@ def some_of_each() -> dict[str, Any]:
             tables.TABLE_I_B.verify(999, min_interval_us=15_000).violations[0],
             tables.TABLE_I_D,
             *events,
-            eeruf.Blind(3, 20),
+            eeruf.typing.Blind(3, 20),
             eeruf.State("unknown", None, 256, "ambiguous", "history"),
             nav.Vfh().steer(nav.Himm(), (0, 0), (5, 0)),
             sim.Simulation(ROOM).robots[0],
-            sim.FiredReading(eeruf.EchoFilter(1, 500).push(0, 9_000), (9_000, 11_000), 0.5, levels_db=(12.5, 3.0)),
+            eeruf.typing.FiredReading(eeruf.EchoFilter(1, 500).push(0, 9_000), (9_000, 11_000), 0.5, levels_db=(12.5, 3.0)),
             sim.simulate(ROOM, periods=20).summary(),
             set_one,
             figures,
@@ -113,3 +113,16 @@ def test_an_ambiguous_reading_names_its_explanation(by: Any) -> None:
     assert reading.explained_by == reading.to_dict()["explained_by"] == by
     assert eval(repr(reading), {"Reading": eeruf.Reading}) == pickle.loads(pickle.dumps(reading)) == reading
     assert reading != eeruf.Reading(0, "ambiguous", 9_000)
+
+
+def test_a_table_prints_as_one() -> None:
+    table = eeruf.experiments.set_one(2, readings=400, methods=["eeruf", "conventional"])
+    head, *rows = str(table).splitlines()
+    assert head.split("  ")[0] == "method" and "wrong of all %" in head
+    assert [row.split()[0] for row in rows] == ["eeruf", "conventional"] and len(str(table)) < 500
+    low, high = (100 * bound for bound in table.methods["eeruf"].rejected.median_95)  # type: ignore[union-attr]
+    assert f"({low:.1f} to {high:.1f})" in rows[0]
+    assert table._repr_html_().count("<tr>") == 3
+    assert "0.75 m/s, finished %" in str(eeruf.experiments.speed_sweep([0.75], seeds=1, methods=["eeruf"]))
+    assert "courses" in str(eeruf.experiments.set_two(1, methods=["eeruf"]))
+    assert "others of accepted %" in str(eeruf.experiments.set_three(1, methods=["eeruf"]))

@@ -57,5 +57,5 @@ def test_stub_knows_every_keyword_that_is_changed(changes: str, taken: type) -> 
 
 
 def test_guards_know_the_literals() -> None:
-    assert eeruf.is_kind("accepted") and not eeruf.is_kind("acepted")
-    assert sim.is_method("eeruf") and not sim.is_method("eruf")
+    assert eeruf.typing.is_kind("accepted") and not eeruf.typing.is_kind("acepted")
+    assert eeruf.typing.is_method("eeruf") and not eeruf.typing.is_method("eruf")

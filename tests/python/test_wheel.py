@@ -125,9 +125,9 @@ def test_lazy_imports_are_listed() -> None:
     program = """
 import eeruf
 assert set(eeruf.__all__) <= set(dir(eeruf))
-assert eeruf.survey is eeruf.survey and eeruf.read_log is eeruf.logs.read_log
+assert eeruf.read_log is eeruf.logs.read_log
 from eeruf import *
-print(survey.__name__, logs.__name__, experiments.__name__, diagnose.__name__)
+print(read_log.__name__, eeruf.logs.__name__, eeruf.typing.__name__, Found.__name__)
 try:
     eeruf.surveyy
 except AttributeError as error:
@@ -135,6 +135,6 @@ except AttributeError as error:
 """
     run = subprocess.run([sys.executable, "-c", program], check=True, capture_output=True, text=True)
     assert run.stdout.splitlines() == [
-        "survey eeruf.logs eeruf.experiments diagnose",
+        "read_log eeruf.logs eeruf.typing Found",
         "module 'eeruf' has no attribute 'surveyy'",
     ]

@@ -38,9 +38,8 @@ fn rung(name: &str, schedule: &Bound<'_, PyAny>, t_delta: Micros) -> PyResult<Ru
 ///     patience: how many calm windows running it takes to fire faster, 1 to 255.
 ///
 /// Raises:
-///     ArgumentError: something of the wrong type or out of range.
-///     RingError: a schedule does not reject crosstalk at this ``t_delta_us``.
-///     ScheduleError: the schedules are no ladder.
+///     EerufError: something of the wrong type or out of range; a schedule does not reject crosstalk at this
+///         ``t_delta_us``; the schedules are no ladder.
 ///
 /// Example:
 ///     >>> import eeruf
@@ -113,8 +112,8 @@ impl Adaptation {
     ///     Whether there was a change; the ring makes it when the present period ends.
     ///
     /// Raises:
-    ///     ArgumentError: no ring, no event, or a ring of other sensors.
-    ///     RingError: the ring refuses the schedule. Both then go on as before.
+    ///     EerufError: no ring, no event, or a ring of other sensors; the ring refuses the schedule. Both then go on
+    ///         as before.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -161,7 +160,7 @@ impl Adaptation {
     ///     sound_m_s: the speed of sound, in m/s, 100 to 1000.
     ///
     /// Raises:
-    ///     ArgumentError: out of range.
+    ///     EerufError: out of range.
     ///
     /// Example:
     ///     >>> import eeruf

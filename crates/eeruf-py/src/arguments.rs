@@ -7,11 +7,11 @@ use eeruf_core::Micros;
 use numpy::{PyReadonlyArray2, prelude::*};
 use pyo3::prelude::*;
 
-use crate::errors::{ArgumentError, warn};
+use crate::errors::{EerufError, warn};
 
 /// `NAME = VALUE; expected EXPECTED`.
 pub(crate) fn wrong(name: &str, value: impl Display, expected: impl Display) -> PyErr {
-    ArgumentError::new_err(format!("{name} = {value}; expected {expected}"))
+    EerufError::new_err(format!("{name} = {value}; expected {expected}"))
 }
 
 pub(crate) fn shown(value: &Bound<'_, PyAny>) -> String {

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use crate::{
     arguments::{items, matrix, native, number, shown, whole, whole_or, wrong},
     batch_state::{BatchState, Known},
-    errors::{Raise, SimulationError as SimulationRefused},
+    errors::{EerufError, Raise},
     exclusive::Exclusive,
     pose::{PoseOf, heading, to_pose},
     simulate::Asked,
@@ -30,9 +30,8 @@ use crate::{
 ///     threads: how many to step on, 1 to 1024; by default one a core.
 ///
 /// Raises:
-///     ArgumentError: no scenes, no such method, or something of the wrong type or out of range.
-///     SceneError: a scene has no robot.
-///     SimulationError: a ring cannot fire by the method as it should listen, or the method has callables.
+///     EerufError: no scenes, no such method, or something of the wrong type or out of range; a scene has no robot; a
+///         ring cannot fire by the method as it should listen, or the method has callables.
 ///
 /// Example:
 ///     >>> from eeruf import sim
@@ -125,8 +124,8 @@ impl Member {
 fn of_world(index: usize) -> impl Fn(SimulationError) -> PyErr {
     move |error| {
         Python::attach(|py| match error.raise() {
-            why if why.is_instance_of::<SimulationRefused>(py) => {
-                SimulationRefused::new_err(format!("world {index}: {}", why.value(py)))
+            why if why.is_instance_of::<EerufError>(py) => {
+                EerufError::new_err(format!("world {index}: {}", why.value(py)))
             }
             why => why,
         })
@@ -220,7 +219,7 @@ impl Batch {
         if asked[0].chosen.makers.is_some() {
             let why = "a batch by a method with make_filter or make_firing; expected one without callables, which \
                        would hold the interpreter lock";
-            return Err(SimulationRefused::new_err(why));
+            return Err(EerufError::new_err(why));
         }
         let sensors = sensors_of(&asked[0]);
         if let Some(other) = asked.iter().position(|world| sensors_of(world) != sensors) {
@@ -267,9 +266,8 @@ impl Batch {
     ///     What all worlds look like then.
     ///
     /// Raises:
-    ///     ArgumentError: no such time or speeds.
-    ///     SimulationError: a robot has moved out of its scene's reach. Other worlds may have gone on; :meth:`reset`
-    ///         this one.
+    ///     EerufError: no such time or speeds; a robot has moved out of its scene's reach. Other worlds may have gone
+    ///         on; :meth:`reset` this one.
     ///
     /// Example:
     ///     >>> from eeruf import experiments, sim
@@ -331,8 +329,8 @@ impl Batch {
     ///     What all worlds look like then.
     ///
     /// Raises:
-    ///     ArgumentError: no such worlds, or not one of a thing for each.
-    ///     SimulationError: a ring cannot fire by the method as it should listen.
+    ///     EerufError: no such worlds, or not one of a thing for each; a ring cannot fire by the method as it should
+    ///         listen.
     ///
     /// Example:
     ///     >>> from eeruf import experiments, sim
@@ -396,7 +394,7 @@ impl Batch {
         let copied =
             py.detach(|| Ok::<_, PyErr>(self.worlds.get()?.iter().map(Member::copy).collect::<Option<_>>()))?;
         // None of its worlds has callables.
-        let worlds = copied.ok_or_else(|| SimulationRefused::new_err("a batch with callables cannot be copied"))?;
+        let worlds = copied.ok_or_else(|| EerufError::new_err("a batch with callables cannot be copied"))?;
         Ok(Self {
             method: self.method.as_ref().map(|method| method.clone_ref(py)),
             worlds: Arc::new(Exclusive::new("Batch", worlds)),

@@ -1,4 +1,4 @@
-//! `sim.BatchState`: the state of a batch's worlds, as arrays.
+//! `typing.BatchState`: what the worlds of a batch look like, as arrays.
 
 use numpy::{Element, PyArray1};
 use pyo3::{
@@ -36,7 +36,7 @@ impl Known {
 ///     >>> state = sim.Batch(experiments.courses(0, 5)).step(0.6)
 ///     >>> state.pose.shape, state.age_s.shape, bool(state.touches.any())
 ///     ((5, 3), (5, 8), False)
-#[pyclass(frozen, module = "eeruf.sim")]
+#[pyclass(frozen, module = "eeruf.typing")]
 pub(crate) struct BatchState {
     worlds: usize,
     sensors: usize,

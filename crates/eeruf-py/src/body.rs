@@ -5,7 +5,7 @@ use pyo3::prelude::*;
 
 use crate::{
     arguments::{number, shown, wrong},
-    errors::ArgumentError,
+    errors::EerufError,
 };
 
 /// A disc, a box or a convex polygon.
@@ -20,7 +20,7 @@ pub(crate) fn outline(value: &Bound<'_, PyAny>) -> PyResult<Body> {
         }
     } else if let Ok(corners) = value.extract::<Vec<[f64; 2]>>() {
         let polygon = Outline::new(&corners).map(Body::Polygon);
-        return polygon.map_err(|error| ArgumentError::new_err(format!("body has {error}")));
+        return polygon.map_err(|error| EerufError::new_err(format!("body has {error}")));
     }
     let expected = "a radius, (length, width), or corners (x, y), in metres above 0 and up to 100";
     Err(wrong("body", shown(value), expected))

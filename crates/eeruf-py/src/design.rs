@@ -9,7 +9,7 @@ use pyo3::{prelude::*, sync::PyOnceLock, types::PyDict};
 
 use crate::{
     arguments::{flag, number, whole_or},
-    errors::{ArgumentError, CertificateError, Raise},
+    errors::{CertificateError, EerufError, Raise},
     found::Found,
     program::examples,
     requirements::{ALIKE, Asked, UNEVEN},
@@ -63,8 +63,7 @@ const FEW_SENSORS: usize = 12;
 ///     which.
 ///
 /// Raises:
-///     ArgumentError: something of the wrong type or out of range.
-///     SearchError: needs that make no sense, or too large a grid.
+///     EerufError: something of the wrong type or out of range; needs that make no sense, or too large a grid.
 ///
 /// Example:
 ///     >>> import eeruf
@@ -152,7 +151,7 @@ pub(crate) fn asked<'py>(
 ///     What is proven: no period is below this, in microseconds. If it is that of the schedule, it is the shortest.
 ///
 /// Raises:
-///     ArgumentError: no text.
+///     EerufError: no text.
 ///     CertificateError: the first line that is wrong.
 ///
 /// Example:
@@ -180,7 +179,7 @@ pub(crate) fn check_certificate(py: Python<'_>, text: &Bound<'_, PyAny>) -> PyRe
 fn checker(py: Python<'_>) -> PyResult<&Bound<'_, PyModule>> {
     static CHECKER: PyOnceLock<Py<PyModule>> = PyOnceLock::new();
     let module = CHECKER.get_or_try_init(py, || {
-        let none = || ArgumentError::new_err("no checker: this package was built without the program");
+        let none = || EerufError::new_err("no checker: this package was built without the program");
         let text = CString::new(examples::text("checker/check_period.py").ok_or_else(none)?)?;
         PyModule::from_code(py, &text, c"checker/check_period.py", c"eeruf._check_period").map(Bound::unbind)
     })?;

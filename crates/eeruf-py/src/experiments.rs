@@ -26,7 +26,7 @@ use serde::{Serialize, de::DeserializeOwned};
 
 use crate::{
     arguments::{choice, flag, items, micros, number, points, shown, whole, whole_or, wrong},
-    errors::{ArgumentError, Raise},
+    errors::{EerufError, Raise},
     methods::{best, methods as methods_of},
     own::Made,
     robot::ring_file,
@@ -41,7 +41,7 @@ const SEEDS_MOST: u64 = 100_000;
 const WITHOUT_ODOMETRY: Micros = Micros::new(500);
 
 fn json(table: &impl Serialize) -> PyResult<String> {
-    serde_json::to_string(table).map_err(|error| ArgumentError::new_err(error.to_string()))
+    serde_json::to_string(table).map_err(|error| EerufError::new_err(error.to_string()))
 }
 
 /// Set I over many geometries: the table, and the runs of each method.
@@ -119,8 +119,7 @@ pub(crate) fn figures(py: Python<'_>, set: u8, runs: &Bound<'_, PyString>) -> Py
         figures: fn(&[R]) -> F,
         groups: impl FnOnce(&[&str], &[Vec<R>]) -> G,
     ) -> PyResult<String> {
-        let refused =
-            |error: serde_json::Error| ArgumentError::new_err(format!("runs: {error}; expected unchanged ones"));
+        let refused = |error: serde_json::Error| EerufError::new_err(format!("runs: {error}; expected unchanged ones"));
         let (names, runs): (Vec<String>, Vec<Vec<R>>) =
             serde_json::from_str::<Vec<(String, Vec<R>)>>(runs).map_err(refused)?.into_iter().unzip();
         let groups = groups(&names.iter().map(String::as_str).collect::<Vec<_>>(), &runs);
@@ -181,7 +180,7 @@ pub(crate) fn room(
     let (seed, physics) = numbered(number, physics)?;
     let height = surroundings::height(Some(height))?;
     let spec = ring_file(ring)?;
-    let robot = spec.room_robot().map_err(ArgumentError::new_err)?.robot;
+    let robot = spec.room_robot().map_err(EerufError::new_err)?.robot;
     let speed_m_s = if flag("driving", Some(driving), false)? { spec.room_speed_m_s() } else { 0.0 };
     let plan = RoomPlan::random(kind, seed, robot.radius_m());
     let world = plan.world(&Robot { odometry: true, ..robot }, speed_m_s).map_err(Raise::raise)?;
@@ -221,10 +220,10 @@ pub(crate) fn recommend(
         wrong: number("wrong", &wrong, 0.0..=1.0)?,
     };
     in_background(py, progress, move |background| {
-        let design = spec.shortest_to_study().map_err(|error| ArgumentError::new_err(error.to_string()))?;
+        let design = spec.shortest_to_study().map_err(|error| EerufError::new_err(error.to_string()))?;
         let keep_going = |done| background.go_on(Some(done), || "rooms".to_owned());
         let judged = spec.judge_in_rooms(design.as_ref(), &asked, &keep_going);
-        let mut answer = judged.map_err(ArgumentError::new_err)?;
+        let mut answer = judged.map_err(EerufError::new_err)?;
         // In rooms of the caller's own nothing appears.
         if cost && asked.own.is_empty() {
             answer.by_cost = spec.cost_in_rooms(design.as_ref(), &asked, &keep_going).ok();
@@ -235,7 +234,7 @@ pub(crate) fn recommend(
 
 /// Scenes by name, as rooms for a ring in the place of their first robot.
 fn own_rooms(rooms: &Bound<'_, PyAny>) -> PyResult<Vec<RoomGroup>> {
-    let refused = || ArgumentError::new_err(format!("rooms = {}; expected scenes by name, a dict", shown(rooms)));
+    let refused = || EerufError::new_err(format!("rooms = {}; expected scenes by name, a dict", shown(rooms)));
     let scenes = rooms.cast::<PyDict>().map_err(|_| refused())?;
     let room = |(number, (name, scene)): (u64, (Bound<'_, PyAny>, Bound<'_, PyAny>))| -> PyResult<RoomGroup> {
         let (name, scene): (String, PyRef<'_, Scene>) =

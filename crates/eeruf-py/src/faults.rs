@@ -8,7 +8,7 @@ use pyo3::{
 use toml::{Table, Value};
 
 use crate::arguments::{items, shown, text, wrong};
-use crate::errors::ArgumentError;
+use crate::errors::EerufError;
 
 /// A value in TOML's form.
 fn value_of(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Value> {
@@ -18,7 +18,7 @@ fn value_of(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Value> {
     }
     // A schedule, and whatever else writes itself so.
     if let Ok(text) = value.call_method0("to_toml").and_then(|text| text.extract::<String>()) {
-        return text.parse::<Table>().map(Value::Table).map_err(|error| ArgumentError::new_err(error.to_string()));
+        return text.parse::<Table>().map(Value::Table).map_err(|error| EerufError::new_err(error.to_string()));
     }
     if value.is_instance_of::<PyString>() {
         return Ok(Value::from(value.extract::<String>()?));
@@ -56,7 +56,7 @@ pub(crate) fn faults(value: Option<&Bound<'_, PyAny>>) -> PyResult<Vec<Fault>> {
         table_of(&name, dict)
     });
     let tables = tables.collect::<PyResult<Vec<_>>>()?;
-    Fault::list_from(tables).map_err(ArgumentError::new_err)
+    Fault::list_from(tables).map_err(EerufError::new_err)
 }
 
 fn shown_value<'py>(py: Python<'py>, value: &Value) -> PyResult<Bound<'py, PyAny>> {

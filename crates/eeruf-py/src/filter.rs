@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use crate::{
     arguments::{in_microseconds, matrix, micros, times_of, whole, whole_or, wrong},
     columns::{Codes, room},
-    errors::{ArgumentError, FilterError, Raise},
+    errors::{EerufError, Raise},
     exclusive::Exclusive,
     requirements,
     ring::MAX_ECHOES,
@@ -24,8 +24,7 @@ use crate::{
 ///     echoes: how many echoes of one firing a sensor reports at most, 1 to 8; the earliest that repeats is accepted.
 ///
 /// Raises:
-///     ArgumentError: something of the wrong type or out of range.
-///     FilterError: fewer than 2 or more than 8 readings to compare.
+///     EerufError: something of the wrong type or out of range; fewer than 2 or more than 8 readings to compare.
 ///
 /// Example:
 ///     >>> import eeruf
@@ -87,7 +86,7 @@ impl EchoFilter {
         } else {
             eeruf_core::EchoFilter::new(t_delta, consecutive).map(|filter| Filter::Several(Box::new(filter)))
         };
-        let filter = filter.map_err(|error| FilterError::new_err(format!("{error:#}")))?;
+        let filter = filter.map_err(|error| EerufError::new_err(format!("{error:#}")))?;
         let filter = Exclusive::new("EchoFilter", filter);
         Ok(Self { filter, sensors, t_delta_us: t_delta.as_micros(), consecutive, echoes })
     }
@@ -104,7 +103,7 @@ impl EchoFilter {
     ///     The reading, without phase and period, which a filter does not know.
     ///
     /// Raises:
-    ///     ArgumentError: no such sensor, or no such time.
+    ///     EerufError: no such sensor, or no such time.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -138,7 +137,7 @@ impl EchoFilter {
     ///     The reading, without phase and period, which a filter does not know.
     ///
     /// Raises:
-    ///     ArgumentError: no such sensor, or no such times.
+    ///     EerufError: no such sensor, or no such times.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -173,7 +172,7 @@ impl EchoFilter {
     ///     Array of int8 of the same shape: indices into ``eeruf.KINDS``.
     ///
     /// Raises:
-    ///     ArgumentError: another shape, or a time that is negative or 2^32 or more; nothing has been taken in then.
+    ///     EerufError: another shape, or a time that is negative or 2^32 or more; nothing has been taken in then.
     ///
     /// Example:
     ///     >>> import eeruf, numpy
@@ -182,7 +181,7 @@ impl EchoFilter {
     ///     [['first', 'first'], ['accepted', 'no_echo']]
     fn push_many<'py>(&self, py: Python<'py>, t_echo_us: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let echoes = matrix("t_echo_us", t_echo_us, self.sensors)?;
-        let echoes = echoes.as_slice().map_err(|error| ArgumentError::new_err(error.to_string()))?;
+        let echoes = echoes.as_slice().map_err(|error| EerufError::new_err(error.to_string()))?;
         if let Some(at) = echoes.iter().position(|&us| !(us.is_nan() || (0.0..=f64::from(u32::MAX)).contains(&us))) {
             let name = format!("t_echo_us[{}, {}]", at / self.sensors, at % self.sensors);
             return Err(wrong(&name, echoes[at], format_args!("0 to {} microseconds, or nan for no echo", u32::MAX)));
@@ -219,7 +218,7 @@ impl EchoFilter {
     ///     sensor: which one, from 0.
     ///
     /// Raises:
-    ///     ArgumentError: no such sensor.
+    ///     EerufError: no such sensor.
     ///
     /// Example:
     ///     >>> import eeruf

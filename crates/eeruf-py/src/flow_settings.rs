@@ -11,7 +11,7 @@ use pyo3::{prelude::*, types::PyDict};
 
 use crate::{
     arguments::{choice, flag, number, shown, text, whole, wrong},
-    errors::ArgumentError,
+    errors::EerufError,
 };
 
 /// Rest of an HC-SR04 module.
@@ -94,7 +94,7 @@ impl FlowSettings {
                     PLANNED.iter().map(|(name, _)| *name).chain([SEED]).chain(BELIEVED.iter().map(|(name, _)| *name));
                 let names: Vec<_> =
                     names.chain(COUNTED.iter().map(|(name, _)| *name)).chain([TOP_SPEED, ALONE, VOTES]).collect();
-                return Err(ArgumentError::new_err(format!(
+                return Err(EerufError::new_err(format!(
                     "no setting {key} of flow; expected one of {}",
                     names.join(", ")
                 )));

@@ -29,7 +29,7 @@ const FARTHEST_M: f64 = 1e3;
 ///     growth: whether cells beside certain ones grow faster (the paper's growth rate operator, for fast robots).
 ///
 /// Raises:
-///     ArgumentError: something of the wrong type or out of range.
+///     EerufError: something of the wrong type or out of range.
 ///
 /// Example:
 ///     >>> from eeruf import nav
@@ -102,7 +102,7 @@ impl Himm {
     ///     place: (x, y) in metres.
     ///
     /// Raises:
-    ///     ArgumentError: no such place.
+    ///     EerufError: no such place.
     ///
     /// Example:
     ///     >>> from eeruf import nav
@@ -124,7 +124,7 @@ impl Himm {
     ///     near_m: cells nearer than this, where the sensor is deaf, are left as they are.
     ///
     /// Raises:
-    ///     ArgumentError: no such place or range.
+    ///     EerufError: no such place or range.
     ///
     /// Example:
     ///     >>> from eeruf import nav
@@ -155,7 +155,7 @@ impl Himm {
     ///     near_m: cells nearer than this, where the sensor is deaf, are left as they are.
     ///
     /// Raises:
-    ///     ArgumentError: no such place or range.
+    ///     EerufError: no such place or range.
     ///
     /// Example:
     ///     >>> from eeruf import nav
@@ -189,7 +189,7 @@ impl Himm {
     ///     sound_m_s: the speed of sound, in m/s, 100 to 1000.
     ///
     /// Raises:
-    ///     ArgumentError: no readings, or out of range.
+    ///     EerufError: no readings, or out of range.
     ///
     /// Example:
     ///     >>> from eeruf import nav, sim
@@ -236,7 +236,7 @@ impl Himm {
     ///     0 to 15, or None outside the window.
     ///
     /// Raises:
-    ///     ArgumentError: no point.
+    ///     EerufError: no point.
     ///
     /// Example:
     ///     >>> from eeruf import nav

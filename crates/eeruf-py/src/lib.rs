@@ -72,16 +72,12 @@ mod _eeruf {
         batch::Batch,
         batch_state::BatchState,
         design::{check_certificate, design},
-        errors::{
-            ArgumentError, CertificateError, EerufError, EerufWarning, ExperimentError, FilterError, PathsError,
-            RingError, SceneError, ScheduleError, SearchError, SimulationError,
-        },
+        errors::{CertificateError, EerufError, EerufWarning},
         experiments::{alcove, course, difference, figures, recommend, room, set_one, set_three, set_two, speed_sweep},
         filter::EchoFilter,
         himm::Himm,
         log_blocks::{LogBlocks, judge},
         logs::{LogError, diagnose, read_firings, survey},
-        maps::read_map,
         methods::Method,
         needs::Needs,
         own::FiredReading,
@@ -115,8 +111,6 @@ mod _eeruf {
         module.add("METHODS", PyTuple::new(module.py(), methods.map(eeruf_sim::Method::as_str))?)?;
         let eeruf = methods.into_iter().filter(|method| method.is_eeruf()).map(eeruf_sim::Method::as_str);
         module.add("EERUF_METHODS", PyTuple::new(module.py(), eeruf.collect::<Vec<_>>())?)?;
-        let examples = crate::program::examples::all().into_iter().map(|(name, _)| name);
-        module.add("EXAMPLES", PyTuple::new(module.py(), examples.collect::<Vec<_>>())?)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))?;
         module.add("CAUSES", PyTuple::new(module.py(), crate::readings::CAUSES)?)?;
         // What the picture of a course shows.

@@ -10,7 +10,7 @@ use pyo3::{create_exception, prelude::*, types::PyDict};
 use crate::{
     arguments::{in_microseconds, micros, shown, wrong},
     columns::read_only,
-    errors::{ArgumentError, EerufError, warn},
+    errors::{EerufError, warn},
     file_object::Work,
     watch::in_background,
 };
@@ -142,14 +142,12 @@ fn log_of(columns: &Columns<'_>) -> PyResult<(FiringLog, Vec<usize>)> {
     let length = sensor.len();
     let lengths = [fired_us.len(), period.len(), phase.len(), rejected.len(), t_echo_us.len(), sends.len()];
     if lengths.iter().any(|&other| other != length) {
-        return Err(ArgumentError::new_err(format!(
-            "columns of {length} and {lengths:?} rows; expected equal lengths"
-        )));
+        return Err(EerufError::new_err(format!("columns of {length} and {lengths:?} rows; expected equal lengths")));
     }
     let (mut firings, mut listened) = (Vec::new(), Vec::new());
     for row in 0..length {
         let bad = |name: &str, value: &dyn std::fmt::Display, expected: &str| {
-            ArgumentError::new_err(format!("{name}[{row}] = {value}; expected {expected}"))
+            EerufError::new_err(format!("{name}[{row}] = {value}; expected {expected}"))
         };
         let echo = t_echo_us[row];
         if !(echo.is_nan() || (0.0..4e9).contains(&echo)) {

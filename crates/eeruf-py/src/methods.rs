@@ -11,7 +11,7 @@ use pyo3::{
 
 use crate::{
     arguments::{instance, items, shown, text, wrong},
-    errors::{ArgumentError, Raise},
+    errors::{EerufError, Raise},
     fields::{Reduced, call, reduce_by_name},
     flow_settings::FlowSettings,
     own::{Made, Makers},
@@ -42,7 +42,7 @@ const EXPECTED: &str = "a name of eeruf.sim.METHODS, or an eeruf.sim.Method";
 ///         :class:`Simulation`.
 ///
 /// Raises:
-///     ArgumentError: no such method, or something that it does not take.
+///     EerufError: no such method, or something that it does not take.
 ///
 /// Example:
 ///     >>> from eeruf import sim
@@ -63,7 +63,7 @@ pub(crate) struct Method {
 
 fn by_name(argument: &str, name: &Bound<'_, PyAny>) -> PyResult<Entry> {
     let name = text(argument, name, EXPECTED)?;
-    name.parse().map_err(|error: eeruf_sim::UnknownMethod| ArgumentError::new_err(error.to_string()))
+    name.parse().map_err(|error: eeruf_sim::UnknownMethod| EerufError::new_err(error.to_string()))
 }
 
 #[pymethods]

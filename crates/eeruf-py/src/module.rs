@@ -7,7 +7,7 @@ use pyo3::{
 };
 
 use crate::arguments::{items, shown, text, wrong};
-use crate::errors::ArgumentError;
+use crate::errors::EerufError;
 
 fn named(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Module> {
     let said = text(name, value, "a module's name")?;
@@ -32,9 +32,9 @@ fn module(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Module> {
                 return Err(wrong(&format!("{name}[\"{key}\"]"), shown(&figure), "a number or a word"));
             }
         };
-        module.set(&key, value).map_err(|error| ArgumentError::new_err(error.to_string()))?;
+        module.set(&key, value).map_err(|error| EerufError::new_err(error.to_string()))?;
     }
-    module.check().map_err(|error| ArgumentError::new_err(error.to_string()))?;
+    module.check().map_err(|error| EerufError::new_err(error.to_string()))?;
     Ok(module)
 }
 

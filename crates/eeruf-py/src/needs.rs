@@ -12,7 +12,7 @@ use pyo3::{
 };
 
 use crate::arguments::{self, shown, wrong};
-use crate::errors::{ArgumentError, RingError, warn_of};
+use crate::errors::{EerufError, warn_of};
 use crate::faults::table_of;
 
 /// Needs of a ring in one value: made from the keys of a ring file, such as ``module`` and ``speed_m_s``, or read from
@@ -23,7 +23,7 @@ use crate::faults::table_of;
 ///         enough.
 ///
 /// Raises:
-///     ArgumentError: a key that no ring file has, or a value that is wrong.
+///     EerufError: a key that no ring file has, or a value that is wrong.
 ///
 /// Example:
 ///     >>> import eeruf
@@ -57,7 +57,7 @@ impl Hash for Needs {
 
 impl Needs {
     fn of_text(py: Python<'_>, file: &Path, text: String) -> PyResult<Self> {
-        let ring = RingSpec::in_file(file, &text).map_err(|error| RingError::new_err(error.to_string()))?;
+        let ring = RingSpec::in_file(file, &text).map_err(|error| EerufError::new_err(error.to_string()))?;
         warn_of(py, file, &text)?;
         let file = (!ring.places.urdf_links.is_empty()).then(|| file.to_owned());
         Ok(Self { text, file, ring: Arc::new(ring) })
@@ -87,8 +87,8 @@ impl Needs {
             said.set_item(key, value)?;
         }
         let text = toml::to_string(&table_of("", &said)?);
-        let text = text.map_err(|error| ArgumentError::new_err(error.to_string()))?;
-        let ring = RingSpec::from_text(&text).map_err(|error| ArgumentError::new_err(error.message().to_owned()))?;
+        let text = text.map_err(|error| EerufError::new_err(error.to_string()))?;
+        let ring = RingSpec::from_text(&text).map_err(|error| EerufError::new_err(error.message().to_owned()))?;
         Ok(Self { text, file: None, ring: Arc::new(ring) })
     }
 
@@ -98,8 +98,7 @@ impl Needs {
     ///     text: in TOML.
     ///
     /// Raises:
-    ///     ArgumentError: no text.
-    ///     RingError: the line that is wrong, and what is expected.
+    ///     EerufError: no text; the line that is wrong, and what is expected.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -117,8 +116,7 @@ impl Needs {
     ///     path: of the file.
     ///
     /// Raises:
-    ///     ArgumentError: not a path.
-    ///     RingError: no such file, a file of another kind, or as for :meth:`from_toml`.
+    ///     EerufError: not a path; no such file, a file of another kind, or as for :meth:`from_toml`.
     ///
     /// Example:
     ///     >>> import eeruf, pathlib, tempfile
@@ -129,7 +127,7 @@ impl Needs {
     #[staticmethod]
     fn read_toml(path: &Bound<'_, PyAny>) -> PyResult<Self> {
         let file: PathBuf = path.extract().map_err(|_| wrong("path", shown(path), "the path of a ring file"))?;
-        let text = Kind::Ring.read(&file).map_err(|error| RingError::new_err(error.to_string()))?;
+        let text = Kind::Ring.read(&file).map_err(|error| EerufError::new_err(error.to_string()))?;
         Self::of_text(path.py(), &file, text)
     }
 

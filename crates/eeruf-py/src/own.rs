@@ -33,7 +33,7 @@ use crate::{
 ///     >>> _ = sim.Simulation(sim.Scene([[5, 2, -5, 2]], robots=[robot]), filter=believe).step(0.1)
 ///     >>> heard[0].reading.sensor, len(heard[0].t_echoes_us), round(heard[0].fired_s, 3)
 ///     (4, 1, 0.014)
-#[pyclass(frozen, eq, module = "eeruf.sim")]
+#[pyclass(frozen, eq, module = "eeruf.typing")]
 #[derive(Clone, PartialEq)]
 pub(crate) struct FiredReading {
     /// The ring's own verdict, with the paper's filter, and its sensor, phase and period.
@@ -106,7 +106,7 @@ impl FiredReading {
     /// Example:
     ///     >>> import eeruf
     ///     >>> reading = eeruf.EchoFilter(1, 500).push(0, 9_000)
-    ///     >>> eeruf.sim.FiredReading(reading, (9_000,)).to_dict()["t_echoes_us"]
+    ///     >>> eeruf.typing.FiredReading(reading, (9_000,)).to_dict()["t_echoes_us"]
     ///     [9000]
     fn to_dict<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
         to_dict(slf, &FIRED)

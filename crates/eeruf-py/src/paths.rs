@@ -25,7 +25,7 @@ use crate::{
 ///     >>> paths = sim.Scene([[5, 2, -5, 2]], physics="plain").paths((0, 0), [(3, 0)], max_order=1)
 ///     >>> len(paths), paths.walls
 ///     (2, [(), (0,)])
-#[pyclass(frozen, module = "eeruf.sim")]
+#[pyclass(frozen, module = "eeruf.typing")]
 pub(crate) struct Paths {
     paths: eeruf_sim::Paths,
     ends: Ends,
@@ -167,7 +167,7 @@ impl Paths {
     ///     Array of shape (n, 2), in metres; n is ``order + 2`` in a flat scene.
     ///
     /// Raises:
-    ///     ArgumentError: no such path.
+    ///     EerufError: no such path.
     ///
     /// Example:
     ///     >>> from eeruf import sim

@@ -5,7 +5,7 @@ use std::ffi::OsString;
 use pyo3::prelude::*;
 
 use crate::arguments;
-use crate::errors::ArgumentError;
+use crate::errors::EerufError;
 
 #[cfg(feature = "program")]
 pub(crate) use eeruf::{Recording, examples, run};
@@ -65,10 +65,10 @@ pub(crate) fn run_program(py: Python<'_>, words: Vec<OsString>) -> u8 {
 /// ``eeruf examples DIR`` writes them all into a folder.
 ///
 /// Args:
-///     name: one of ``EXAMPLES``, as ``"scenes/alcove.toml"``.
+///     name: such as ``"scenes/alcove.toml"``; the error about a name that is none lists them all.
 ///
 /// Raises:
-///     ArgumentError: there is no such example.
+///     EerufError: there is no such example.
 ///
 /// Example:
 ///     >>> import eeruf
@@ -80,8 +80,8 @@ pub(crate) fn example(name: &Bound<'_, PyAny>) -> PyResult<&'static str> {
     examples::text(&name).ok_or_else(|| {
         let names: Vec<_> = examples::all().into_iter().map(|(name, _)| name).collect();
         if names.is_empty() {
-            return ArgumentError::new_err("no examples: this package was built without the program");
+            return EerufError::new_err("no examples: this package was built without the program");
         }
-        ArgumentError::new_err(format!("name: {name:?}; expected one of {}", names.join(", ")))
+        EerufError::new_err(format!("name: {name:?}; expected one of {}", names.join(", ")))
     })
 }

@@ -39,8 +39,8 @@ use crate::{
 ///     and each grows by the same. Its schedule is one that meets the needs, or else the one with that ``T_delta``.
 ///
 /// Raises:
-///     ArgumentError: something of the wrong type or out of range.
-///     SearchError: needs that make no sense, or a period that is no whole number of ticks.
+///     EerufError: something of the wrong type or out of range; needs that make no sense, or a period that is no
+///         whole number of ticks.
 ///
 /// Example:
 ///     >>> import eeruf
@@ -109,8 +109,7 @@ pub(crate) fn fit<'py>(
 ///     and whether the period is proven the shortest.
 ///
 /// Raises:
-///     ArgumentError: something of the wrong type or out of range.
-///     SearchError: needs that make no sense, or too large a grid.
+///     EerufError: something of the wrong type or out of range; needs that make no sense, or too large a grid.
 ///
 /// Example:
 ///     >>> import eeruf

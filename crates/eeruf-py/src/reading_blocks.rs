@@ -19,7 +19,7 @@ const BLOCK_PERIODS: u32 = 10_000;
 ///     >>> blocks = list(sim.simulate_blocks(scene, periods=25, block_periods=10))
 ///     >>> len(blocks), sum(map(len, blocks))
 ///     (3, 200)
-#[pyclass(frozen, module = "eeruf.sim")]
+#[pyclass(frozen, module = "eeruf.typing")]
 pub(crate) struct ReadingBlocks {
     simulation: Simulation,
     block_periods: u32,
@@ -58,9 +58,7 @@ impl ReadingBlocks {
 ///     An iterator of ``Readings``, which together are those of :func:`simulate`.
 ///
 /// Raises:
-///     ArgumentError: as for :func:`simulate`, and so all others.
-///     SceneError: as for :func:`simulate`.
-///     SimulationError: as for :func:`simulate`.
+///     EerufError: as for :func:`simulate`, and so all others; as for :func:`simulate`; as for :func:`simulate`.
 ///     MemoryError: a block does not fit into memory.
 ///
 /// Example:

@@ -10,7 +10,7 @@ use pyo3::{
 use crate::{
     arguments::{instance, items, number_or, shown, wrong},
     columns::{Codes, Columns, read_only},
-    errors::ArgumentError,
+    errors::EerufError,
     fields::attributes,
     paths::coded,
 };
@@ -203,7 +203,7 @@ impl Readings {
     ///     Array of bool.
     ///
     /// Raises:
-    ///     ArgumentError: the tolerance is negative or not a number.
+    ///     EerufError: the tolerance is negative or not a number.
     ///
     /// Example:
     ///     >>> from eeruf import sim
@@ -226,7 +226,7 @@ impl Readings {
     ///     A ``Summary``.
     ///
     /// Raises:
-    ///     ArgumentError: the tolerance is negative or not a number.
+    ///     EerufError: the tolerance is negative or not a number.
     ///
     /// Example:
     ///     >>> from eeruf import sim
@@ -238,7 +238,7 @@ impl Readings {
     fn summary<'py>(&self, py: Python<'py>, tolerance_us: Option<&Bound<'py, PyAny>>) -> PyResult<Bound<'py, PyAny>> {
         let tolerance_us = tolerance(tolerance_us)?;
         let summary = py.detach(|| self.readings.summary_within(tolerance_us));
-        let json = serde_json::to_string(&summary).map_err(|error| ArgumentError::new_err(error.to_string()))?;
+        let json = serde_json::to_string(&summary).map_err(|error| EerufError::new_err(error.to_string()))?;
         py.import("eeruf._making")?.call_method1("summary", (json,))
     }
 
@@ -332,7 +332,7 @@ impl Readings {
     ///
     /// Raises:
     ///     OSError: it cannot be read.
-    ///     ArgumentError: it holds no readings.
+    ///     EerufError: it holds no readings.
     ///
     /// Example:
     ///     >>> import pathlib, tempfile
@@ -353,7 +353,7 @@ impl Readings {
     ///     parts: readings of one method and of as many sensors each.
     ///
     /// Raises:
-    ///     ArgumentError: no readings, or of several methods or numbers of sensors.
+    ///     EerufError: no readings, or of several methods or numbers of sensors.
     ///
     /// Example:
     ///     >>> from eeruf import sim
@@ -397,7 +397,7 @@ impl Readings {
     ///     columns: any others of :meth:`columns`, by name.
     ///
     /// Raises:
-    ///     ArgumentError: no such column, arrays of several lengths, or values out of range.
+    ///     EerufError: no such column, arrays of several lengths, or values out of range.
     ///
     /// Example:
     ///     >>> from eeruf import sim

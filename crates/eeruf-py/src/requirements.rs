@@ -7,7 +7,7 @@ use pyo3::exceptions::PyTypeError;
 use pyo3::{prelude::*, types::PyDict, types::PyList};
 
 use crate::arguments::{choice, flag, items, micros, micros_or, shown, times, whole, whole_or, wrong};
-use crate::errors::ArgumentError;
+use crate::errors::EerufError;
 use crate::needs::Needs;
 
 /// Further needs of rings whose sensors are all alike, besides the common ones.
@@ -38,7 +38,7 @@ pub(crate) fn layout(value: Option<&Bound<'_, PyAny>>, neighbours: u8, sensors: 
             }
         }
     };
-    value.map_or(Ok(LayoutKey::Unsaid), key)?.owned(neighbours, sensors).map_err(ArgumentError::new_err)
+    value.map_or(Ok(LayoutKey::Unsaid), key)?.owned(neighbours, sensors).map_err(EerufError::new_err)
 }
 
 /// Number of adjacent sensors that count as neighbours; four by default, as in the paper (Sec. 3.1 c).
@@ -107,7 +107,7 @@ impl<'py> Asked<'py> {
         let min_interval = micros("min_interval_us", &self.must("min_interval_us")?)?;
         let window = each("window_us", &self.must("window_us")?, 1)?;
         let spec = self.spec(sensors, t_delta, min_interval, window)?;
-        OwnedUneven::can_fire_together(&spec.problem().requirements, sensors).map_err(ArgumentError::new_err)?;
+        OwnedUneven::can_fire_together(&spec.problem().requirements, sensors).map_err(EerufError::new_err)?;
         Ok(spec)
     }
 
@@ -200,7 +200,7 @@ impl<'py> Asked<'py> {
         let together = list("together", together.as_ref(), expected)?;
         OwnedUneven::new(sensors, [t_delta, window, refire], &intervals, &lines, &together)
             .map(Some)
-            .map_err(ArgumentError::new_err)
+            .map_err(EerufError::new_err)
     }
 }
 

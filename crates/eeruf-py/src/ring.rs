@@ -49,9 +49,9 @@ use crate::{
 ///         fault; ``"trusted"``, ``"clear"`` once repeated, as a cut wire is then.
 ///
 /// Raises:
-///     ArgumentError: something of the wrong type or out of range.
-///     RingError: the ring cannot listen like that, such as longer than the schedule lets it; or the schedule does not
-///         reject crosstalk at this ``t_delta_us`` (see ``Ring.unverified``), or breaks what a sensor needs.
+///     EerufError: something of the wrong type or out of range; the ring cannot listen like that, such as longer than
+///         the schedule lets it; or the schedule does not reject crosstalk at this ``t_delta_us`` (see
+///         ``Ring.unverified``), or breaks what a sensor needs.
 ///
 /// Example:
 ///     >>> import eeruf
@@ -132,7 +132,7 @@ macro_rules! table {
         match &mut $any.fires {
             $crate::ring::Fires::Table($ring) => Ok($call),
             $crate::ring::Fires::TableSeveral($ring) => Ok($call),
-            _ => Err($crate::errors::RingError::new_err(format!(
+            _ => Err($crate::errors::EerufError::new_err(format!(
                 "{} of a ring by flow; expected a ring by an eeruf.Schedule: this one has settings",
                 $what
             ))),

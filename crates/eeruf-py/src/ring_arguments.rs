@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 
 use crate::{
     arguments::{micros, micros_or, shown, whole_or, wrong},
-    errors::ArgumentError,
+    errors::EerufError,
     flow_settings::FlowSettings,
     moments::instant,
     needs::Needs,
@@ -65,7 +65,7 @@ impl<'py> FlowNeeds<'_, 'py> {
                 value.map_or(Ok(()), |value| Err(wrong(name, shown(value), "none beside a Needs, which says it")))?;
             }
             let ring = needs.ring();
-            let flow = ring.flow(1).map_err(ArgumentError::new_err)?;
+            let flow = ring.flow(1).map_err(EerufError::new_err)?;
             let settings = FlowSettings::over(settings, flow.belief)?;
             let (turns, belief) = (settings.turns_over(flow.turns), settings.belief_over(flow.belief));
             return Ok((ring.sensors, belief, turns, config(flow.window, flow.blanking), flow.limits));
@@ -79,7 +79,7 @@ impl<'py> FlowNeeds<'_, 'py> {
         let needs = ring.problem().requirements;
         let turns = settings.turns(ring.window, blanking, reach)?.keeping(&needs);
         let limits = TurnSettings::limits(sensors, &needs);
-        let limits = limits.map_err(|error| ArgumentError::new_err(format!("{error:#}")))?;
+        let limits = limits.map_err(|error| EerufError::new_err(format!("{error:#}")))?;
         Ok((sensors, belief, turns, config(ring.window, blanking), limits))
     }
 }

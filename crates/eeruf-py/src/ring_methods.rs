@@ -7,7 +7,7 @@ use pyo3::{prelude::*, types::PyDict};
 
 use crate::{
     arguments::{flag, instance, micros, number},
-    errors::RingError,
+    errors::EerufError,
     exclusive::Exclusive,
     gone::Gone,
     moments::{expected_changes, instant, until},
@@ -68,8 +68,7 @@ impl Ring {
     ///     silence: as for ``Ring``.
     ///
     /// Raises:
-    ///     ArgumentError: something of the wrong type or out of range.
-    ///     RingError: the ring cannot listen like that.
+    ///     EerufError: something of the wrong type or out of range; the ring cannot listen like that.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -126,8 +125,8 @@ impl Ring {
     ///     silence: as for ``Ring``.
     ///
     /// Raises:
-    ///     ArgumentError: something of the wrong type or out of range.
-    ///     RingError: settings that contradict each other or the window.
+    ///     EerufError: something of the wrong type or out of range; settings that contradict each other or the
+    ///         window.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -173,7 +172,7 @@ impl Ring {
     ///     A ``Fire``, a ``Reading``, a ``PeriodEnded``, or None if there is nothing to do now.
     ///
     /// Raises:
-    ///     ArgumentError: not such a time, or not one change for each sensor.
+    ///     EerufError: not such a time, or not one change for each sensor.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -203,8 +202,8 @@ impl Ring {
     ///     now_us: the present, 0 or more.
     ///
     /// Raises:
-    ///     ArgumentError: no such speed or time.
-    ///     RingError: the ring fires by a schedule: its :meth:`poll` takes the change that is expected.
+    ///     EerufError: no such speed or time; the ring fires by a schedule: its :meth:`poll` takes the change that is
+    ///         expected.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -222,7 +221,7 @@ impl Ring {
         match &mut self.0.get()?.fires {
             Fires::Flow(ring) => ring.moving(speed, turn, now),
             Fires::FlowSeveral(ring) => ring.moving(speed, turn, now),
-            _ => return Err(RingError::new_err("moving of a ring by a schedule; expected a ring by eeruf.Ring.flow")),
+            _ => return Err(EerufError::new_err("moving of a ring by a schedule; expected a ring by eeruf.Ring.flow")),
         }
         Ok(())
     }
@@ -260,7 +259,7 @@ impl Ring {
     ///     now_us: the present, 0 or more.
     ///
     /// Raises:
-    ///     ArgumentError: not such a time.
+    ///     EerufError: not such a time.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -285,9 +284,9 @@ impl Ring {
     ///     schedule: of as many sensors.
     ///
     /// Raises:
-    ///     ArgumentError: no schedule, or not of as many sensors.
-    ///     RingError: a sensor would fire again while it still listens, or the schedule does not reject crosstalk at
-    ///         this ``t_delta_us``, or breaks what a sensor needs. The ring goes on as before.
+    ///     EerufError: no schedule, or not of as many sensors; a sensor would fire again while it still listens, or
+    ///         the schedule does not reject crosstalk at this ``t_delta_us``, or breaks what a sensor needs. The ring
+    ///         goes on as before.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -405,7 +404,7 @@ impl Ring {
     ///     at_us: when, 0 or more.
     ///
     /// Raises:
-    ///     ArgumentError: no such sensor or time.
+    ///     EerufError: no such sensor or time.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -430,8 +429,7 @@ impl Ring {
     ///     latest_us: when it was first seen with it, not before that.
     ///
     /// Raises:
-    ///     ArgumentError: no such sensor or time.
-    ///     RingError: the latest is before the earliest.
+    ///     EerufError: no such sensor or time; the latest is before the earliest.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -460,7 +458,7 @@ impl Ring {
     ///     at_us: when, 0 or more; a time that is not after the sensor's firing before is ignored.
     ///
     /// Raises:
-    ///     ArgumentError: no such sensor or time.
+    ///     EerufError: no such sensor or time.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -482,7 +480,7 @@ impl Ring {
     ///     sensor: which one, from 0.
     ///
     /// Raises:
-    ///     ArgumentError: no such sensor.
+    ///     EerufError: no such sensor.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -506,7 +504,7 @@ impl Ring {
     ///     A ``State``: an obstacle, clear, too close, unanswered or unknown, for how long, and why.
     ///
     /// Raises:
-    ///     ArgumentError: no such sensor.
+    ///     EerufError: no such sensor.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -526,7 +524,7 @@ impl Ring {
     ///     t_echo_us: the echo time in microseconds, or None if it listened and heard nothing.
     ///
     /// Raises:
-    ///     ArgumentError: no such sensor or time.
+    ///     EerufError: no such sensor or time.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -549,7 +547,7 @@ impl Ring {
     ///     answered: False takes that back: it was a disturbance.
     ///
     /// Raises:
-    ///     ArgumentError: no such sensor.
+    ///     EerufError: no such sensor.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -575,7 +573,7 @@ impl Ring {
     ///     sensor: which one, from 0.
     ///
     /// Raises:
-    ///     ArgumentError: no such sensor.
+    ///     EerufError: no such sensor.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -591,7 +589,7 @@ impl Ring {
     ///     sensor: which one, from 0.
     ///
     /// Raises:
-    ///     ArgumentError: no such sensor.
+    ///     EerufError: no such sensor.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -609,7 +607,7 @@ impl Ring {
     ///     sensor: which one, from 0.
     ///
     /// Raises:
-    ///     ArgumentError: no such sensor.
+    ///     EerufError: no such sensor.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -628,7 +626,7 @@ impl Ring {
     ///     sensor: which one, from 0.
     ///
     /// Raises:
-    ///     ArgumentError: no such sensor.
+    ///     EerufError: no such sensor.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -675,7 +673,7 @@ impl Ring {
     ///     now_us: the present, 0 or more.
     ///
     /// Raises:
-    ///     ArgumentError: not such a time.
+    ///     EerufError: not such a time.
     ///
     /// Example:
     ///     >>> import eeruf

@@ -15,7 +15,7 @@ use crate::{
         choice, flag, in_radians, instance, items, micros, number, number_or, shown, times, whole, whole_or, wrong,
     },
     body::{outline, shown_body},
-    errors::ArgumentError,
+    errors::EerufError,
     faults::{shown_table, table_of},
     fields::{Reduced, attributes, call, reduce_by_name},
     module::{modules, shown_module},
@@ -76,7 +76,7 @@ use crate::{
 ///     clock_drift_ppm: rate error of its clock, positive if fast, in millionths.
 ///
 /// Raises:
-///     ArgumentError: something of the wrong type or out of range, or two kinds of motion at once.
+///     EerufError: something of the wrong type or out of range, or two kinds of motion at once.
 ///
 /// Example:
 ///     >>> from eeruf import sim
@@ -172,7 +172,7 @@ fn heights(value: &Bound<'_, PyAny>, sensors: usize) -> PyResult<Vec<f64>> {
 pub(crate) fn sketch(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Sketch> {
     let refused = |_| wrong(name, shown(value), "a dict with keys of [firing], such as {\"turn_us\": 33_000}");
     let table = table_of(name, value.cast::<PyDict>().map_err(refused)?)?;
-    Sketch::from_table(&table).map_err(|message| ArgumentError::new_err(format!("{name}: {message}")))
+    Sketch::from_table(&table).map_err(|message| EerufError::new_err(format!("{name}: {message}")))
 }
 
 /// The ring of a `Needs` or a ring file.
@@ -182,7 +182,7 @@ pub(crate) fn ring_file(value: &Bound<'_, PyAny>) -> PyResult<RingSpec> {
 }
 
 fn refused_ring(message: &str) -> PyErr {
-    ArgumentError::new_err(format!("ring: {message}"))
+    EerufError::new_err(format!("ring: {message}"))
 }
 
 /// A time for each of this many sensors, and true if they were given one by one.
@@ -402,7 +402,7 @@ impl Robot {
     ///     changes: arguments of ``Robot``, by name.
     ///
     /// Raises:
-    ///     ArgumentError: as for ``Robot``.
+    ///     EerufError: as for ``Robot``.
     ///
     /// Example:
     ///     >>> from eeruf import sim

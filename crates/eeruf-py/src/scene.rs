@@ -18,7 +18,7 @@ use crate::{
     arguments::{self, instance, matrix, number_or, points_in_space, shown, whole, whole_or, wrong},
     contents::{Contents, Objects},
     drawing,
-    errors::{Raise, SceneError, warn, warn_of},
+    errors::{EerufError, Raise, warn, warn_of},
     faults,
     fields::{Reduced, attributes, reduce_by_name},
     paths::{Ends, Paths},
@@ -55,8 +55,8 @@ use crate::{
 ///         ``{"kind": "cut", "sensors": [2], "from_s": 3.0}``; docs/how-to/simulate.md has them all.
 ///
 /// Raises:
-///     ArgumentError: an array of the wrong shape, an index of no wall, something of the wrong type or out of range.
-///     SceneError: walls that cross, have no length or are not finite, or a robot where none can stand.
+///     EerufError: an array of the wrong shape, an index of no wall, something of the wrong type or out of range;
+///         walls that cross, have no length or are not finite, or a robot where none can stand.
 ///
 /// Example:
 ///     >>> from eeruf import sim
@@ -84,7 +84,7 @@ impl Scene {
     }
 
     pub(crate) fn world(&self) -> PyResult<&Arc<World>> {
-        self.contents.world().ok_or_else(|| SceneError::new_err("a scene of 0 robots; expected 1 or more to simulate"))
+        self.contents.world().ok_or_else(|| EerufError::new_err("a scene of 0 robots; expected 1 or more to simulate"))
     }
 
     /// Checks the parts against each other.
@@ -92,7 +92,7 @@ impl Scene {
         let WorldParts { scene, noise, physics, max_order, seed, faults, .. } = parts;
         let contents = if robots.is_empty() {
             if !faults.is_empty() {
-                return Err(SceneError::new_err(format!("{} faults; expected none without robots", faults.len())));
+                return Err(EerufError::new_err(format!("{} faults; expected none without robots", faults.len())));
             }
             Objects::Walls(Box::new(scene))
         } else {
@@ -232,8 +232,8 @@ impl Scene {
     ///     path: of the file; a schedule that it names is looked for beside it.
     ///
     /// Raises:
-    ///     ArgumentError: not a path.
-    ///     SceneError: no such file, or it says something that makes no scene: by name, value and what is expected.
+    ///     EerufError: not a path; no such file, or it says something that makes no scene: by name, value and what is
+    ///         expected.
     ///
     /// Example:
     ///     >>> import eeruf, pathlib, tempfile
@@ -248,14 +248,43 @@ impl Scene {
         Self::from_text(&path, &text)
     }
 
-    /// A scene from the text of a scene file, as :meth:`to_toml` writes it.
+    /// Read an occupancy grid, as the ROS ``map_server`` saves it: walls along the outlines of what is occupied.
+    ///
+    /// A cell is occupied if it is with a probability above the file's ``occupied_thresh``; one of which nothing is known
+    /// is not. Add robots with :meth:`replace`.
+    ///
+    /// Args:
+    ///     path: of the YAML file, which names a PGM picture beside it.
+    ///     tolerance_m: how far walls may be from the edges of the occupied cells, in metres, 0 to 1000; one and a half
+    ///         cells if it is not given, which makes the stair straight that a slanted wall becomes in cells.
+    ///
+    /// Raises:
+    ///     EerufError: not a path, or no such tolerance; no such file, or it says something that makes no map: by name,
+    ///         value and what is expected.
+    ///
+    /// Example:
+    ///     >>> from pathlib import Path
+    ///     >>> from tempfile import TemporaryDirectory
+    ///     >>> from eeruf import sim
+    ///     >>> with TemporaryDirectory() as folder:
+    ///     ...     _ = (Path(folder) / "room.pgm").write_text("P2 4 3 1  0 0 0 0  0 1 1 0  0 0 0 0")
+    ///     ...     text = "image: room.pgm\nresolution: 0.5\norigin: [0, 0, 0]"
+    ///     ...     _ = (Path(folder) / "room.yaml").write_text(text)
+    ///     ...     sim.Scene.read_map(Path(folder) / "room.yaml", tolerance_m=0)
+    ///     <Scene: 8 walls, 0 poles, 0 robots>
+    #[staticmethod]
+    #[pyo3(signature = (path, *, tolerance_m=None))]
+    fn read_map(path: &Bound<'_, PyAny>, tolerance_m: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
+        crate::maps::read_map(path, tolerance_m)
+    }
+
+    /// A scene out of the text of a scene file, as :meth:`to_toml` writes it.
     ///
     /// Args:
     ///     text: the contents of a file; a schedule that it names is looked for in the present folder.
     ///
     /// Raises:
-    ///     ArgumentError: not a text.
-    ///     SceneError: it says something that makes no scene: by name, value and what is expected.
+    ///     EerufError: not a text; it says something that makes no scene: by name, value and what is expected.
     ///
     /// Example:
     ///     >>> from eeruf import sim
@@ -287,8 +316,7 @@ impl Scene {
     ///         given too, and no openings.
     ///
     /// Raises:
-    ///     ArgumentError: as for ``Scene``.
-    ///     SceneError: as for ``Scene``.
+    ///     EerufError: as for ``Scene``; as for ``Scene``.
     ///
     /// Example:
     ///     >>> from eeruf import sim
@@ -419,9 +447,8 @@ impl Scene {
     ///     The paths as arrays, sorted by receiver and then by length.
     ///
     /// Raises:
-    ///     ArgumentError: something of the wrong type, shape or range.
-    ///     PathsError: a point that is not finite, far from all walls or inside something solid, too high an order, or
-    ///         too many paths to keep.
+    ///     EerufError: something of the wrong type, shape or range; a point that is not finite, far from all walls or
+    ///         inside something solid, too high an order, or too many paths to keep.
     ///
     /// Example:
     ///     >>> from eeruf import sim

@@ -10,7 +10,7 @@ use pyo3::types::{PyDict, PyTuple};
 
 use crate::{
     arguments::{self, micros, shown, times, whole, wrong},
-    errors::{Raise, ScheduleError, warn_of},
+    errors::{EerufError, Raise, warn_of},
     fields::{Reduced, attributes, call, reduce, repr, to_dict},
     gone::Gone,
     report::report,
@@ -32,9 +32,8 @@ use crate::{
 ///     t_wait_b_us: ``T_wait`` of each sensor in phase b.
 ///
 /// Raises:
-///     ArgumentError: a time is not a whole number of microseconds, or negative.
-///     ScheduleError: the lengths differ, there are no or more than 64 sensors, or one would fire after its period's
-///         end.
+///     EerufError: a time is not a whole number of microseconds, or negative; the lengths differ, there are no or
+///         more than 64 sensors, or one would fire after its period's end.
 ///
 /// Example:
 ///     >>> import eeruf
@@ -73,7 +72,7 @@ impl Schedule {
     /// Reads a text, from a file or not.
     fn of_text(py: Python<'_>, file: &Path, text: &str) -> PyResult<Self> {
         let schedule = build(text, |file: ScheduleFile| file.schedule());
-        let schedule = schedule.map_err(|error| ScheduleError::new_err(error.in_file(file).to_string()))?;
+        let schedule = schedule.map_err(|error| EerufError::new_err(error.in_file(file).to_string()))?;
         warn_of(py, file, text)?;
         Ok(Self(schedule))
     }
@@ -102,8 +101,7 @@ impl Schedule {
     ///     t_fire_b_us: when each sensor fires in phase b, as many.
     ///
     /// Raises:
-    ///     ArgumentError: a time is not a whole number of microseconds, or negative.
-    ///     ScheduleError: as for ``Schedule``.
+    ///     EerufError: a time is not a whole number of microseconds, or negative; as for ``Schedule``.
     ///
     /// Example:
     ///     >>> from eeruf import Schedule
@@ -138,8 +136,7 @@ impl Schedule {
     ///         ``t_fire_a_us``, ``t_fire_b_us``.
     ///
     /// Raises:
-    ///     ArgumentError: not a text.
-    ///     ScheduleError: the text is no TOML, a key is missing, or the numbers make no schedule.
+    ///     EerufError: not a text; the text is no TOML, a key is missing, or the numbers make no schedule.
     ///
     /// Example:
     ///     >>> from eeruf import Schedule
@@ -158,8 +155,7 @@ impl Schedule {
     ///     path: of the file.
     ///
     /// Raises:
-    ///     ArgumentError: not a path.
-    ///     ScheduleError: no such file, a file of another kind, or as for :meth:`from_toml`.
+    ///     EerufError: not a path; no such file, a file of another kind, or as for :meth:`from_toml`.
     ///
     /// Example:
     ///     >>> import eeruf, pathlib, tempfile
@@ -171,7 +167,7 @@ impl Schedule {
     fn read_toml(path: &Bound<'_, PyAny>) -> PyResult<Self> {
         let py = path.py();
         let path: PathBuf = path.extract().map_err(|_| wrong("path", shown(path), "the path of a schedule in TOML"))?;
-        let text = Kind::Schedule.read(&path).map_err(|error| ScheduleError::new_err(error.to_string()))?;
+        let text = Kind::Schedule.read(&path).map_err(|error| EerufError::new_err(error.to_string()))?;
         Self::of_text(py, &path, &text)
     }
 
@@ -181,8 +177,7 @@ impl Schedule {
     ///     text: one JSON object.
     ///
     /// Raises:
-    ///     ArgumentError: not a text.
-    ///     ScheduleError: the text is no JSON, a key is missing, or the numbers make no schedule.
+    ///     EerufError: not a text; the text is no JSON, a key is missing, or the numbers make no schedule.
     ///
     /// Example:
     ///     >>> from eeruf import Schedule
@@ -191,9 +186,9 @@ impl Schedule {
     #[staticmethod]
     fn from_json(text: &Bound<'_, PyAny>) -> PyResult<Self> {
         let text = arguments::text("text", text, "a schedule in JSON")?;
-        let bad = |error: serde_json::Error| ScheduleError::new_err(explain_json(&error.to_string()).to_string());
+        let bad = |error: serde_json::Error| EerufError::new_err(explain_json(&error.to_string()).to_string());
         let file: ScheduleFile = serde_json::from_str(&text).map_err(bad)?;
-        file.schedule().map(Self).map_err(ScheduleError::new_err)
+        file.schedule().map(Self).map_err(EerufError::new_err)
     }
 
     /// The period ``T_p``, in microseconds.
@@ -248,8 +243,7 @@ impl Schedule {
     ///     The schedule; verify it again, since ``T_delta`` and the intervals scale as well.
     ///
     /// Raises:
-    ///     ArgumentError: not whole numbers.
-    ///     ScheduleError: one is zero, or the times become too long.
+    ///     EerufError: not whole numbers; one is zero, or the times become too long.
     ///
     /// Example:
     ///     >>> from eeruf.tables import TABLE_I_D
@@ -284,7 +278,7 @@ impl Schedule {
     ///     The report, which is true if all conditions hold.
     ///
     /// Raises:
-    ///     ArgumentError: something of the wrong type or out of range.
+    ///     EerufError: something of the wrong type or out of range.
     ///
     /// Example:
     ///     >>> from eeruf.tables import TABLE_I_D
@@ -324,7 +318,7 @@ impl Schedule {
     ///     >>> json.loads(TABLE_I_D.to_json())["period_us"]
     ///     100000
     fn to_json(&self) -> PyResult<String> {
-        serde_json::to_string(&ScheduleFile::from(&self.0)).map_err(|error| ScheduleError::new_err(error.to_string()))
+        serde_json::to_string(&ScheduleFile::from(&self.0)).map_err(|error| EerufError::new_err(error.to_string()))
     }
 
     /// Write a Rust constant for firmware, which is checked when it is compiled.
@@ -339,7 +333,7 @@ impl Schedule {
     ///     stale_echo: as in :meth:`verify`.
     ///
     /// Raises:
-    ///     ArgumentError: something of the wrong type or out of range.
+    ///     EerufError: something of the wrong type or out of range.
     ///
     /// Example:
     ///     >>> from eeruf.tables import TABLE_I_D
@@ -371,7 +365,7 @@ impl Schedule {
     ///     stale_echo: as in :meth:`verify`.
     ///
     /// Raises:
-    ///     ArgumentError: something of the wrong type or out of range.
+    ///     EerufError: something of the wrong type or out of range.
     ///
     /// Example:
     ///     >>> from eeruf.tables import TABLE_I_D

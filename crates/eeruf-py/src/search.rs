@@ -37,8 +37,7 @@ const POLL: u32 = 1 << 12;
 ///     criterion: how to read Eqs. (13a), (13b): as the ``"paper"`` prints them, or ``"exact"``.
 ///
 /// Raises:
-///     ArgumentError: something of the wrong type or out of range.
-///     SearchError: needs that make no sense, or too large a grid.
+///     EerufError: something of the wrong type or out of range; needs that make no sense, or too large a grid.
 ///
 /// Example:
 ///     >>> import eeruf
@@ -140,8 +139,7 @@ impl WaitSearch {
     ///     The number of tables, or the limit if there are as many.
     ///
     /// Raises:
-    ///     ArgumentError: the limit is no such number.
-    ///     SearchError: more than can be counted.
+    ///     EerufError: the limit is no such number; more than can be counted.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -159,7 +157,7 @@ impl WaitSearch {
     /// All tables in lexical order, as an iterator of ``Schedule``.
     ///
     /// Raises:
-    ///     SearchError: too large to search.
+    ///     EerufError: too large to search.
     ///
     /// Example:
     ///     >>> import itertools, eeruf
@@ -182,8 +180,7 @@ impl WaitSearch {
     ///     The table, with the interval, ``T_delta``, longest wait or period as ``value_us``.
     ///
     /// Raises:
-    ///     ArgumentError: no such objective or budget.
-    ///     SearchError: too large to search.
+    ///     EerufError: no such objective or budget; too large to search.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -222,7 +219,7 @@ impl WaitSearch {
     ///     the table are alike.
     ///
     /// Raises:
-    ///     SearchError: too large to search.
+    ///     EerufError: too large to search.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -258,7 +255,7 @@ struct Walk {
 ///     >>> tables = eeruf.WaitSearch(2, 40_000, 4_000, 1000, t_delta_us=999).all()
 ///     >>> next(tables).sensors
 ///     2
-#[pyclass(frozen, module = "eeruf")]
+#[pyclass(frozen, module = "eeruf.typing")]
 pub(crate) struct WaitTables(Exclusive<Walk>);
 
 #[pymethods]

@@ -25,7 +25,7 @@ use crate::{
 ///     now_us: the present, 0 or more.
 ///
 /// Raises:
-///     ArgumentError: something of the wrong type or out of range.
+///     EerufError: something of the wrong type or out of range.
 ///
 /// Example:
 ///     >>> import eeruf
@@ -83,7 +83,7 @@ impl SensorWatch {
     ///     None.
     ///
     /// Raises:
-    ///     ArgumentError: no event, or not such a time.
+    ///     EerufError: no event, or not such a time.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -107,7 +107,7 @@ impl SensorWatch {
     ///     now_us: the present, 0 or more.
     ///
     /// Raises:
-    ///     ArgumentError: no such sensor or time.
+    ///     EerufError: no such sensor or time.
     ///
     /// Example:
     ///     >>> import eeruf

@@ -31,9 +31,8 @@ use crate::{
 ///     Every reading.
 ///
 /// Raises:
-///     ArgumentError: no such method, or something of the wrong type or out of range.
-///     SceneError: the scene has no robot.
-///     SimulationError: a ring cannot fire by the method as it should listen.
+///     EerufError: no such method, or something of the wrong type or out of range; the scene has no robot; a ring
+///         cannot fire by the method as it should listen.
 ///     MemoryError: the readings do not fit into memory; :func:`simulate_blocks` gives them bit by bit.
 ///
 /// Example:

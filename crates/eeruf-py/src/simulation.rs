@@ -15,7 +15,7 @@ use pyo3::{
 
 use crate::{
     arguments::{instance, number, shown, whole, wrong},
-    errors::{Raise, SimulationError as SimulationRefused},
+    errors::{EerufError, Raise},
     fields::record,
     logs,
     own::{self, Calls},
@@ -52,9 +52,8 @@ use crate::{
 /// run within a step, so they cannot query or steer the simulation.
 ///
 /// Raises:
-///     ArgumentError: no such method, or something of the wrong type or out of range.
-///     SceneError: the scene has no robot.
-///     SimulationError: a ring cannot fire by the method as it should listen, or a period cannot be fired.
+///     EerufError: no such method, or something of the wrong type or out of range; the scene has no robot; a ring
+///         cannot fire by the method as it should listen, or a period cannot be fired.
 ///     LogError: the file cannot be written.
 ///
 /// Example:
@@ -180,7 +179,7 @@ impl Simulation {
     pub(crate) fn lock(&self) -> PyResult<MutexGuard<'_, UnderWay>> {
         if *self.stepping.lock().unwrap_or_else(PoisonError::into_inner) == Some(thread::current().id()) {
             let why = "a simulation under way; expected its firing and its filter to leave it alone";
-            return Err(SimulationRefused::new_err(why));
+            return Err(EerufError::new_err(why));
         }
         Ok(self.under_way.lock().unwrap_or_else(PoisonError::into_inner))
     }
@@ -289,8 +288,7 @@ impl Simulation {
     ///     What was read meanwhile: the readings whose windows have closed.
     ///
     /// Raises:
-    ///     ArgumentError: no such time.
-    ///     SimulationError: a robot has moved out of the scene's reach.
+    ///     EerufError: no such time; a robot has moved out of the scene's reach.
     ///
     /// Example:
     ///     >>> from eeruf import sim
@@ -315,8 +313,7 @@ impl Simulation {
     ///     What was read then: one reading, several of the same moment, or none if that time passed before.
     ///
     /// Raises:
-    ///     ArgumentError: no such time.
-    ///     SimulationError: a robot has moved out of the scene's reach.
+    ///     EerufError: no such time; a robot has moved out of the scene's reach.
     ///
     /// Example:
     ///     >>> from eeruf import sim
@@ -341,7 +338,7 @@ impl Simulation {
     ///     w_rad_s: the rate of turn in rad/s, counter-clockwise, -50 to 50.
     ///
     /// Raises:
-    ///     ArgumentError: no such robot or speed.
+    ///     EerufError: no such robot or speed.
     ///
     /// Example:
     ///     >>> from eeruf import sim
@@ -374,7 +371,7 @@ impl Simulation {
     ///     pose: (x, y, heading) in metres and radians, up to 10^5.
     ///
     /// Raises:
-    ///     ArgumentError: no such robot or pose.
+    ///     EerufError: no such robot or pose.
     ///
     /// Example:
     ///     >>> from eeruf import sim
@@ -400,7 +397,7 @@ impl Simulation {
     ///     seed: of the noise from now on; the same as before by default.
     ///
     /// Raises:
-    ///     ArgumentError: no such seed.
+    ///     EerufError: no such seed.
     ///     LogError: what was left of the file could not be written.
     ///
     /// Example:
@@ -442,10 +439,9 @@ impl Simulation {
     ///     schedule: a ``Schedule`` of as many sensors.
     ///
     /// Raises:
-    ///     ArgumentError: no such robot, or something else than a schedule.
-    ///     SimulationError: a method without such a schedule (immediate refiring, dither, adaptive, a firing
-    ///         of one's own), a schedule of another number of sensors, or one by which a sensor would fire again while
-    ///         it listens. The ring then goes on as before.
+    ///     EerufError: no such robot, or something else than a schedule; a method without such a schedule (immediate
+    ///         refiring, dither, adaptive, a firing of one's own), a schedule of another number of sensors, or one by
+    ///         which a sensor would fire again while it listens. The ring then goes on as before.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -474,9 +470,8 @@ impl Simulation {
     ///     scene: whose robots, noise, seed, order and physics do not count: those of the simulation stay.
     ///
     /// Raises:
-    ///     ArgumentError: something else than a scene.
-    ///     SimulationError: a sensor is within something solid or out of the scene's reach. Everything then stays as it
-    ///         was; of a robot that moves it is said when it fires.
+    ///     EerufError: something else than a scene; a sensor is within something solid or out of the scene's reach.
+    ///         Everything then stays as it was; of a robot that moves it is said when it fires.
     ///
     /// Example:
     ///     >>> from eeruf import sim
@@ -559,7 +554,7 @@ impl Simulation {
     fn __reduce__<'py>(&self, py: Python<'py>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let Some((scene, method)) = self.made_of.as_ref().filter(|_| !self.calls().is_given()) else {
             let why = "a copy of a simulation with firing or filter; expected a sim.Method that makes them for each";
-            return Err(SimulationRefused::new_err(why));
+            return Err(EerufError::new_err(why));
         };
         let history = self.history.lock().unwrap_or_else(PoisonError::into_inner);
         let all = history.before.iter().flat_map(|before| before.iter()).chain(&history.since);

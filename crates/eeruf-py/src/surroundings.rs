@@ -16,7 +16,7 @@ use crate::fields::{Reduced, attributes, reduce, reduce_by_name, repr};
 ///     roughness_m: the root-mean-square height of the surface, in metres.
 ///
 /// Raises:
-///     ArgumentError: a number out of range.
+///     EerufError: a number out of range.
 ///
 /// Example:
 ///     >>> from eeruf import sim
@@ -105,7 +105,7 @@ pub(crate) fn materials(
 ///     burst_db: how far they are above what is just heard, in dB, -200 to 200.
 ///
 /// Raises:
-///     ArgumentError: a number out of range.
+///     EerufError: a number out of range.
 ///
 /// Example:
 ///     >>> from eeruf import sim

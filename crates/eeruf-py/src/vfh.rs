@@ -34,7 +34,7 @@ const TURN_GAIN: f64 = 3.0;
 ///     turn_max_rad_s: the rate of turn at which it goes no faster than ``speed_min_m_s`` (Omega_max), in rad/s.
 ///
 /// Raises:
-///     ArgumentError: something of the wrong type or out of range.
+///     EerufError: something of the wrong type or out of range.
 ///
 /// Example:
 ///     >>> from eeruf import nav
@@ -145,7 +145,7 @@ impl Vfh {
     ///     Array of 72 densities, float64; sector k begins at k times 5 degrees.
     ///
     /// Raises:
-    ///     ArgumentError: no grid or no place.
+    ///     EerufError: no grid or no place.
     ///
     /// Example:
     ///     >>> from eeruf import nav
@@ -169,7 +169,7 @@ impl Vfh {
     ///     A ``Steering``, or None if every direction is blocked.
     ///
     /// Raises:
-    ///     ArgumentError: no grid or no point.
+    ///     EerufError: no grid or no point.
     ///
     /// Example:
     ///     >>> from eeruf import nav
@@ -204,7 +204,7 @@ impl Vfh {
     ///     The speed ahead in m/s, and the rate of turn in rad/s.
     ///
     /// Raises:
-    ///     ArgumentError: no grid, no pose, no point, or out of range.
+    ///     EerufError: no grid, no pose, no point, or out of range.
     ///
     /// Example:
     ///     >>> from eeruf import nav

@@ -10,7 +10,6 @@ from eeruf.plot._course import course
 from eeruf.plot._methods import methods
 from eeruf.plot._readings import readings
 from eeruf.plot._scene import scene
-from eeruf.plot._speeds import speeds
 from eeruf.plot._timing import timing
 
-__all__ = ["animation", "course", "methods", "readings", "scene", "speeds", "timing"]
+__all__ = ["animation", "course", "methods", "readings", "scene", "timing"]

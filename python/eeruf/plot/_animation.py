@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eeruf import _eeruf
-from eeruf._eeruf import ArgumentError
+from eeruf._eeruf import EerufError
 from eeruf.plot._canvas import axes, check_kind, check_whole, colours
 from eeruf.plot._scene import scene as draw_scene
 from eeruf.plot._ways import way
@@ -47,7 +47,7 @@ def animation(
         variable until it has been saved.
 
     Raises:
-        ArgumentError: a number is out of range, a robot moves, or there are no readings of these periods.
+        EerufError: a number is out of range, a robot moves, or there are no readings of these periods.
 
     Example:
         >>> import eeruf
@@ -65,7 +65,7 @@ def animation(
     begin, end = first * period_s, (first + periods) * period_s
     shown = np.flatnonzero((np.asarray(readings.fired_s) >= begin) & (np.asarray(readings.fired_s) < end))
     if len(shown) == 0:
-        raise ArgumentError(f"first = {first}: no readings of {periods} periods from there; expected some of them")
+        raise EerufError(f"first = {first}: no readings of {periods} periods from there; expected some of them")
     flights = _flights(scene, readings, shown)
     ax = axes(ax, width=6.0, height=6.0)
     its = colours(ax)
@@ -124,12 +124,12 @@ def _flights(scene: Scene, readings: Readings, shown: NDArray[np.intp]) -> list[
             ways[path] = way(scene, readings.paths, path)
         line = ways[path]
         if line is None:
-            raise ArgumentError(
+            raise EerufError(
                 "scene: the readings came along other ways; expected their own scene, with robots that stand still"
             )
         verdict = "not accepted" if not accepted[reading] else "wrong" if wrong[reading] else "right"
         leaves, arrives = float(readings.emitted_s[reading]), float(readings.fired_s[reading]) + echo_us / 1e6
         flights.append(_Flight(line, leaves, arrives, verdict))
     if not flights:
-        raise ArgumentError("readings: nothing was heard in these periods; expected some echo")
+        raise EerufError("readings: nothing was heard in these periods; expected some echo")
     return flights

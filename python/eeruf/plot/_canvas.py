@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from eeruf._eeruf import ArgumentError
+from eeruf._eeruf import EerufError
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -97,13 +97,13 @@ def bare(ax: Axes) -> None:
 def check_kind(name: str, value: object, kind: type, expected: str) -> None:
     """Refuse values of other types."""
     if not isinstance(value, kind):
-        raise ArgumentError(f"{name} = {value!r:.60}; expected {expected}")
+        raise EerufError(f"{name} = {value!r:.60}; expected {expected}")
 
 
 def check_whole(name: str, value: object, least: int, most: int) -> None:
     """Refuse values that are not whole numbers, or out of range."""
     if isinstance(value, bool) or not isinstance(value, (int, np.integer)) or not least <= value <= most:
-        raise ArgumentError(f"{name} = {value!r:.60}; expected a whole number from {least} to {most}")
+        raise EerufError(f"{name} = {value!r:.60}; expected a whole number from {least} to {most}")
 
 
 def points(name: str, value: ArrayLike, expected: str) -> NDArray[np.float64]:
@@ -111,4 +111,4 @@ def points(name: str, value: ArrayLike, expected: str) -> NDArray[np.float64]:
     try:
         return np.asarray(value, dtype=float).reshape(-1, 2)
     except (TypeError, ValueError):
-        raise ArgumentError(f"{name} = {value!r:.60}; expected {expected}") from None
+        raise EerufError(f"{name} = {value!r:.60}; expected {expected}") from None

@@ -7,14 +7,14 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eeruf import _eeruf
-from eeruf._eeruf import ArgumentError
+from eeruf._eeruf import EerufError
 from eeruf.plot._canvas import axes, colours, legend_above, title
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
-    from eeruf.experiments import Run, SetTwo
+    from eeruf._results import Run, SetTwo
 
 
 def course(
@@ -39,7 +39,7 @@ def course(
         The axes; metres, one as long in x as in y.
 
     Raises:
-        ArgumentError: the result has no such method or course.
+        EerufError: the result has no such method or course.
 
     Example:
         >>> import eeruf
@@ -108,24 +108,24 @@ def _chosen(
     result: SetTwo | Run, method: str | None, course: int | None
 ) -> tuple[Run, str | None, tuple[float, float] | None]:
     """A run, its method and where the second robot stood, as far as the result says."""
-    from eeruf.experiments import Run, SetTwo
+    from eeruf._results import Run, SetTwo
 
     if isinstance(result, Run):
         return result, None, None
     if not isinstance(result, SetTwo):
-        raise ArgumentError(
+        raise EerufError(
             f"result = {result!r:.60}; expected what eeruf.experiments.set_two returns, or one of its runs"
         )
     of_methods = {str(name): of for name, of in result.runs.items()}
     if method is None:
         method = "eeruf" if "eeruf" in of_methods else next(iter(of_methods))
     if not isinstance(method, str) or method not in of_methods:
-        raise ArgumentError(f"method = {method!r}; expected one of {', '.join(of_methods)}")
+        raise EerufError(f"method = {method!r}; expected one of {', '.join(of_methods)}")
     runs = {run.course: run for run in of_methods[method]}
     if course is None:
         course = min(runs)
     if not isinstance(course, int) or course not in runs:
-        raise ArgumentError(f"course = {course!r}; expected {min(runs)} to {max(runs)}")
+        raise EerufError(f"course = {course!r}; expected {min(runs)} to {max(runs)}")
     return runs[course], method, result.second_robot_m
 
 

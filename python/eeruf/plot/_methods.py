@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from eeruf._eeruf import EERUF_METHODS, ArgumentError
-from eeruf._results import SetOne, SetTwo, Spread
+from eeruf._eeruf import EERUF_METHODS, EerufError
+from eeruf._results import SetOne, SetTwo, SpeedSweep, Spread
 from eeruf.plot._canvas import axes, bare, colours
+from eeruf.plot._speeds import speeds
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -50,7 +51,7 @@ def _quantiles(figure: Spread | float) -> dict[str, float]:
 
 
 def methods(
-    result: SetOne | SetTwo,
+    result: SetOne | SetTwo | SpeedSweep,
     *,
     figure: str = "wrong_of_all",
     names: Sequence[str] | None = None,
@@ -59,7 +60,8 @@ def methods(
     """The firing methods side by side: the median over all geometries, and the middle 80 % of them.
 
     Args:
-        result: of ``eeruf.experiments.set_one`` or ``set_two``.
+        result: of ``eeruf.experiments.set_one`` or ``set_two``; or of ``speed_sweep``, whose lines show the share of courses finished
+            over the top speed, full for EERUF's methods and dashed for others, whatever ``figure`` and ``names``.
         figure: which figure to draw, such as "wrong_of_all", "rejected", "good_lost" or "readings_per_s".
         names: which methods, first on top; by default all, largest median on top.
         ax: where to draw.
@@ -68,7 +70,7 @@ def methods(
         The axes; percent for shares of readings, else the figure's own unit.
 
     Raises:
-        ArgumentError: no method has that figure, or there is no such method.
+        EerufError: no method has that figure, or there is no such method.
 
     Example:
         >>> import eeruf
@@ -78,14 +80,17 @@ def methods(
         ['conventional', 'eeruf']
 
     """
+    if isinstance(result, SpeedSweep):
+        return speeds(result, ax)
     if not isinstance(result, (SetOne, SetTwo)):
-        raise ArgumentError(f"result = {result!r:.60}; expected what eeruf.experiments.set_one or set_two returns")
+        expected = "what eeruf.experiments.set_one, set_two or speed_sweep returns"
+        raise EerufError(f"result = {result!r:.60}; expected {expected}")
     known = isinstance(figure, str) and figure in _TITLES
     found = {name: getattr(of, figure, None) for name, of in result.methods.items()} if known else {}
     figures = {name: of for name, of in found.items() if of is not None}
     if not figures:
         has = (title for title in sorted(_TITLES) if any(hasattr(of, title) for of in result.methods.values()))
-        raise ArgumentError(f"figure = {figure!r}; expected one of {', '.join(has)}")
+        raise EerufError(f"figure = {figure!r}; expected one of {', '.join(has)}")
     # Set II has one number for all courses.
     spreads: dict[str, dict[str, float]] = {name: _quantiles(of) for name, of in figures.items()}
     chosen = sorted(spreads, key=lambda name: -spreads[name]["median"])
@@ -93,7 +98,7 @@ def methods(
         chosen = list(names) if isinstance(names, Iterable) else []
         strange = [name for name in chosen if not isinstance(name, str) or name not in spreads]
         if strange or not chosen:
-            raise ArgumentError(f"names = {names!r:.60}; expected some of {', '.join(spreads)}")
+            raise EerufError(f"names = {names!r:.60}; expected some of {', '.join(spreads)}")
     ax = axes(ax, height=1.0 + 0.34 * len(chosen))
     its = colours(ax)
     share = not figure.endswith(("_ms", "_per_s", "_m_s", "_m")) and figure not in _COUNTS

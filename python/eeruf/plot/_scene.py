@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from eeruf import _eeruf
-from eeruf._eeruf import ArgumentError
+from eeruf._eeruf import EerufError
 from eeruf.plot._canvas import Colours, axes, bare, check_kind, check_whole, colours, legend_above, points, title
 from eeruf.plot._ways import sensor_places, way
 
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import ArrayLike
 
-    from eeruf.sim import Paths, Readings, Scene
+    from eeruf._eeruf import Paths, Readings, Scene
 
 
 def scene(
@@ -58,14 +58,14 @@ def scene(
     """
     check_kind("scene", scene, _eeruf.Scene, "an eeruf.sim.Scene")
     if paths is not None:
-        check_kind("paths", paths, _eeruf.Paths, "eeruf.sim.Paths")
+        check_kind("paths", paths, _eeruf.Paths, "eeruf.typing.Paths")
     if readings is not None:
         check_kind("readings", readings, _eeruf.Readings, "eeruf.sim.Readings")
     check_whole("most", most, 0, 2**32 - 1)
     none = np.empty((0, 2))
     ends = none if source is None else points("source", source, "one point (x, y) in metres")
     if len(ends) > 1:
-        raise ArgumentError(f"source = {source!r:.60}; expected one point (x, y) in metres")
+        raise EerufError(f"source = {source!r:.60}; expected one point (x, y) in metres")
     at = none if receivers is None else points("receivers", receivers, "an array of floats of shape (n, 2), in metres")
     ax = axes(ax, width=6.0, height=6.0)
     its = colours(ax)

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from eeruf._eeruf import EERUF_METHODS
 from eeruf._results import SpeedSweep
-from eeruf.plot._canvas import axes, bare, check_kind, colours, legend_above
+from eeruf.plot._canvas import axes, bare, colours, legend_above
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -14,27 +14,8 @@ if TYPE_CHECKING:
 _MARKERS = "osD^vPX*<>hd8"
 
 
-def speeds(result: SpeedSweep, *, ax: Axes | None = None) -> Axes:
-    """The share of courses finished over the platform's top speed, a line for each method.
-
-    Args:
-        result: of ``eeruf.experiments.speed_sweep``.
-        ax: where to draw.
-
-    Returns:
-        The axes; percent over metres a second. EERUF's methods have full lines, the others dashed ones.
-
-    Raises:
-        ArgumentError: the result is not one of ``speed_sweep``.
-
-    Example:
-        >>> import eeruf
-        >>> sweep = eeruf.experiments.speed_sweep([0.75, 1.0], seeds=2, methods=["eeruf"])
-        >>> eeruf.plot.speeds(sweep).get_xlabel()
-        'top speed (m/s)'
-
-    """
-    check_kind("result", result, SpeedSweep, "what eeruf.experiments.speed_sweep returns")
+def speeds(result: SpeedSweep, ax: Axes | None) -> Axes:
+    """The share of courses finished over the top speed, a line for each method."""
     steps = result.steps
     ax = axes(ax)
     its = colours(ax)

@@ -19,9 +19,7 @@ Example:
 
 from __future__ import annotations
 
-from eeruf import nav as nav
-from eeruf import sim as sim
-from eeruf import tables as tables
+from eeruf import nav as nav, sim as sim, tables as tables
 from eeruf._eeruf import (
     KINDS,
     Adaptation,
@@ -49,10 +47,7 @@ from eeruf._eeruf import (
 # Checkers take it for true, as the one of typing, which would cost more to import than all of eeruf.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from eeruf import experiments as experiments
-    from eeruf import logs as logs
-    from eeruf import plot as plot
-    from eeruf import typing as typing
+    from eeruf import experiments as experiments, logs as logs, plot as plot, typing as typing
     from eeruf._records import Found, Report, State
     from eeruf.logs import check, read_log
 

@@ -114,6 +114,9 @@ class Found(Result):
     """A proof for :func:`~eeruf.check_certificate`; None unless requested from ``design``."""
     from_atlas: bool = field(default=False, repr=False)
     """True if the atlas of proven rings answered, and nothing was searched."""
+    certified_us: int | None = None
+    """The period below which the certificate proves that there is none, in microseconds: where it is less than ``value_us``, the
+    period is proven but not certified. None unless the atlas answered or ``design`` was asked for a certificate."""
 
 
 @dataclass(frozen=True)

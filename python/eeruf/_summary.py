@@ -55,7 +55,9 @@ class Table(Result):
 
     def _rows(self) -> list[list[str]]:
         methods = self.methods.items()  # type: ignore[attr-defined]
-        rows = [[name, *(_said(getattr(of, key), title) for key, title in self._titles.items())] for name, of in methods]
+        rows = [
+            [name, *(_said(getattr(of, key), title) for key, title in self._titles.items())] for name, of in methods
+        ]
         return [["method", *self._titles.values()], *rows]
 
     def __str__(self) -> str:

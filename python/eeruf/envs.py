@@ -26,8 +26,7 @@ from eeruf import _eeruf
 from eeruf.experiments import courses
 
 if TYPE_CHECKING:
-    from eeruf._eeruf import _Method as Method
-    from eeruf._eeruf import _Physics
+    from eeruf._eeruf import _Method as Method, _Physics
 
 __all__ = ["CourseEnv", "CourseVectorEnv"]
 

@@ -19,8 +19,8 @@ if TYPE_CHECKING:
     from os import PathLike
 
     _Progress = bool | Callable[[float | None, str], object] | None
-    from eeruf._eeruf import _Height, _Physics
-    from eeruf._eeruf import _Method as Method
+    from eeruf._eeruf import _Height, _Method as Method, _Physics
+    from eeruf._results import SetOne, SetThree, SetTwo, SpeedSweep
 
     _Corner = Literal["behind", "ahead"] | tuple[float, float] | None
     _RoomKind = Literal["corridor", "office", "hall", "clutter", "alcove", "garage", "aisle", "meeting"]

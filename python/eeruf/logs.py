@@ -20,9 +20,8 @@ from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any, ClassVar, Literal, TypeVar, overload
 
 from eeruf import _eeruf
-from eeruf._columns import Columns as _Columns
-from eeruf._columns import column as _column
-from eeruf._eeruf import EerufError, LogError
+from eeruf._columns import Columns as _Columns, column as _column
+from eeruf._eeruf import EerufError
 from eeruf._opened import opened_log as _opened
 
 if TYPE_CHECKING:

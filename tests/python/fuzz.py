@@ -241,7 +241,9 @@ def calls(c: Chance) -> list[Callable[[], Any]]:
         lambda: ANY.PeriodEnded(a(), a()).to_dict(),
         lambda: pickle.dumps(ANY.PeriodEnded(m(3), m(1), m(40), m(90), m(0), m({"accepted": 8}))),
         lambda: ANY.Reading(a(), a(), a(), a(), a(), a(), a(), a()),
-        lambda: ANY.typing.FiredReading(m(ANY.Reading(3, "first", 9_000)), m([9_000]), m(0.5), m(0), m([3.0])).to_dict(),
+        lambda: ANY.typing.FiredReading(
+            m(ANY.Reading(3, "first", 9_000)), m([9_000]), m(0.5), m(0), m([3.0])
+        ).to_dict(),
         lambda: ANY.check_certificate(a()),
         lambda: ANY.sim.Material(m(0.9), m(0.0)),
         lambda: ANY.sim.Noise(fading_db_rms=m(1.0), jitter_us_rms=m(1.0), bursts_per_s=m(1.0), burst_db=m(1.0)),

@@ -10,7 +10,7 @@ import eeruf.envs
 import gymnasium
 import numpy as np
 import pytest
-from eeruf import experiments, sim
+from eeruf import sim
 from gymnasium.utils.env_checker import check_env
 
 ROBOT = sim.Robot((0, 0, math.pi / 2), sensors=8, spacing_rad=0.26, radius_m=0.3)
@@ -131,7 +131,7 @@ def test_vector_environment_repeats_and_begins_anew() -> None:
                 assert all((final is not None) == ended for final, ended in zip(info["final_obs"], over))
                 # The next course begins at the start, with nothing known.
                 assert observed[over, 16] == pytest.approx(7.2, abs=1e-3)
-                assert (observed[over, 8:16] == eeruf.envs.OLDEST_S).all()
+                assert (observed[over, 8:16] == 10.0).all()
             seen.append(observed)
         return seen, ends
 

@@ -92,7 +92,7 @@ def test_a_ring_by_needs_accepts_what_is_before_it() -> None:
 def test_a_certificate_of_design_is_checked_and_pickles() -> None:
     found = eeruf.design(8, 999, 15_000, 30_000, certificate=True)
     assert found.certificate is not None
-    assert eeruf.check_certificate(found.certificate) == found.value_us == 63_000
+    assert eeruf.check_certificate(found.certificate) == found.value_us == found.certified_us == 63_000
     again = pickle.loads(pickle.dumps(found))
     assert again == found
     assert again.certificate == found.certificate

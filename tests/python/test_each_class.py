@@ -359,7 +359,9 @@ def test_codes_compare_with_names() -> None:
             "1.54 at most; .*; likely metres or milliseconds",
         ),
         (
-            lambda: eeruf.logs.diagnose(logs.Firings.of(sensor=[0], fired_us=[0], period=[0], phase=[0], t_echo_us=[1.5])),
+            lambda: eeruf.logs.diagnose(
+                logs.Firings.of(sensor=[0], fired_us=[0], period=[0], phase=[0], t_echo_us=[1.5])
+            ),
             "t_echo_us = 1.5 at most; .*; likely metres",
         ),
         (

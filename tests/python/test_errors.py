@@ -12,8 +12,7 @@ import matplotlib.figure
 import numpy as np
 import pytest
 from eeruf import sim, tables
-from hypothesis import given, settings
-from hypothesis import strategies as st
+from hypothesis import given, settings, strategies as st
 
 ANYTHING = st.one_of(
     st.none(),

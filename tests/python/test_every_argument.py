@@ -110,10 +110,7 @@ RIGHT_OF: dict[str, dict[str, Any]] = {
     "eeruf.typing.Scenes": {"kind": "alcove"},
     "eeruf.experiments.recommend": {"ring": RINGS / "hc-sr04-8.toml"},
     "eeruf.experiments.rooms": {"ring": RINGS / "hc-sr04-8.toml"},
-    **{
-        name: {"log": FIRINGS}
-        for name in ("eeruf.logs.diagnose", "eeruf.logs.survey")
-    },
+    **{name: {"log": FIRINGS} for name in ("eeruf.logs.diagnose", "eeruf.logs.survey")},
     "Himm().clear": {"sensor": (0, 0, 0)},
     "Himm().echo": {"sensor": (0, 0, 0)},
 }

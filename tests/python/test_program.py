@@ -11,7 +11,7 @@ from typing import Any
 import eeruf
 import numpy as np
 import pytest
-from eeruf import Schedule, Violation, sim, tables
+from eeruf import Schedule, sim, tables
 
 ROOT = Path(__file__).parents[2]
 
@@ -130,7 +130,7 @@ def test_a_report_is_the_programs() -> None:
         {name: tuple(value) if isinstance(value, list) else value for name, value in violation.items()}
         for violation in printed["violations"]
     ]
-    violations = [Violation(**violation) for violation in fields]
+    violations = [eeruf.typing.Violation(**violation) for violation in fields]
     assert list(report.violations) == violations
     assert len(violations) > 2
 

@@ -34,7 +34,9 @@ def some_of_each() -> dict[str, Any]:
             eeruf.State("unknown", None, 256, "ambiguous", "history"),
             nav.Vfh().steer(nav.Himm(), (0, 0), (5, 0)),
             sim.Simulation(ROOM).robots[0],
-            eeruf.typing.FiredReading(eeruf.EchoFilter(1, 500).push(0, 9_000), (9_000, 11_000), 0.5, levels_db=(12.5, 3.0)),
+            eeruf.typing.FiredReading(
+                eeruf.EchoFilter(1, 500).push(0, 9_000), (9_000, 11_000), 0.5, levels_db=(12.5, 3.0)
+            ),
             sim.simulate(ROOM, periods=20).summary(),
             set_one,
             figures,

@@ -21,6 +21,7 @@ pub(crate) struct Found {
     reason: Option<String>,
     certificate: Option<String>,
     from_atlas: bool,
+    certified_us: Option<u32>,
 }
 
 impl Found {
@@ -40,13 +41,18 @@ impl Found {
     pub(crate) fn of_design(design: &RingDesign, began: Instant, certificate: Option<String>) -> Self {
         let found = search::Found { schedule: Some(design.schedule), ..design.found };
         let reason = Some(design.reason.clone());
-        Self { from_atlas: design.from_atlas, certificate, ..Self::of(&found, began, reason) }
+        // The atlas knows; else only who asks for a proof pays for one.
+        let is_asked = design.from_atlas || certificate.is_some();
+        let certified_us = is_asked.then(|| design.certified()).flatten().map(Micros::as_micros);
+        Self { from_atlas: design.from_atlas, certificate, certified_us, ..Self::of(&found, began, reason) }
     }
 
     /// The result in Python's form.
     pub(crate) fn into_python(self, py: Python<'_>) -> PyResult<Bound<'_, PyAny>> {
-        let Self { schedule, value_us, bound_us, proven, nodes, seconds, reason, certificate, from_atlas } = self;
-        let fields = (schedule, value_us, bound_us, proven, nodes, seconds, reason, certificate, from_atlas);
+        let Self { schedule, value_us, bound_us, proven, nodes, seconds, reason, certificate, .. } = self;
+        let (from_atlas, certified_us) = (self.from_atlas, self.certified_us);
+        let fields =
+            (schedule, value_us, bound_us, proven, nodes, seconds, reason, certificate, from_atlas, certified_us);
         record(py, "Found", fields)
     }
 }

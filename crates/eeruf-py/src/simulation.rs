@@ -48,7 +48,7 @@ use crate::{
 ///     mcap: a file that each step is written into, for Foxglove, Rerun and ROS 2: ranges, what is accepted, poses, the
 ///         scene, each reading's path and each firing. :meth:`close` ends it, and so does ``with``.
 ///
-/// The step that called these callables raises their exceptions, and an ArgumentError about invalid return values. They
+/// The step that called these callables raises their exceptions, and an EerufError about invalid return values. They
 /// run within a step, so they cannot query or steer the simulation.
 ///
 /// Raises:

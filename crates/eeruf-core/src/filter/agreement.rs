@@ -44,6 +44,9 @@ impl Tolerance {
         if echo == NO_ECHO || previous == NO_ECHO {
             return echo == previous;
         }
+        if expected_change_us == 0 {
+            return echo.abs_diff(previous) <= self.t_delta;
+        }
         let change = i64::from(echo.as_micros()) - i64::from(previous.as_micros()) - i64::from(expected_change_us);
         change.unsigned_abs() <= u64::from(self.t_delta.as_micros())
     }

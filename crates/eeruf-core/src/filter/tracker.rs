@@ -53,10 +53,7 @@ impl<const E: usize> Tracker<E> {
         expected_change_us: i32,
         mut explanation: impl FnMut(Micros, Micros) -> Explained,
     ) -> Verdict {
-        let mut latest = [NO_ECHO; E];
-        for (slot, &echo) in latest.iter_mut().zip(echoes) {
-            *slot = echo;
-        }
+        let latest = core::array::from_fn(|place| echoes.get(place).copied().unwrap_or(NO_ECHO));
         let before = core::mem::replace(&mut self.known, latest);
         let runs = core::mem::replace(&mut self.runs, [0; E]);
         let most = tolerance.consecutive();

@@ -40,10 +40,16 @@ impl<const H: usize> Firings<H> {
 
     #[inline]
     pub(super) fn push(&mut self, now: Instant) {
-        let Some((last, before)) = self.0.split_first_mut() else { return };
-        let mut at = core::mem::replace(last, now);
-        for slot in before {
-            core::mem::swap(slot, &mut at);
+        // Without a loop, in a third of the instructions.
+        match self.0.as_mut_slice() {
+            [last, a, b, c] => (*last, *a, *b, *c) = (now, *last, *a, *b),
+            [last, a, b] => (*last, *a, *b) = (now, *last, *a),
+            others => {
+                let mut at = now;
+                for slot in others {
+                    core::mem::swap(slot, &mut at);
+                }
+            }
         }
     }
 

@@ -234,8 +234,7 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
         self.echoes.first().copied().filter(|&echo| echo != NO_ECHO)
     }
 
-    /// Ends the firing; if it has already ended, takes the late edge. `unwitnessed` is the kind of silence without a
-    /// witness.
+    /// Ends the firing. `unwitnessed`: the kind of silence without a witness.
     #[inline]
     pub(super) fn end(&mut self, unwitnessed: ReadingKind) -> Ended<E> {
         let echoes = core::mem::replace(&mut self.echoes, [NO_ECHO; E]);
@@ -249,22 +248,22 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
             UNANSWERED if is_silent => Some(unwitnessed),
             _ => None,
         };
-        let (listened, was_ready) = (self.is(LISTENING), self.is(READY));
         let echoes =
             if matches!(unusable, Some(ReadingKind::Stuck | ReadingKind::Late)) { [NO_ECHO; E] } else { echoes };
-        let is_held = evidence == HELD && (!listened || is_silent && unusable.is_none());
-        if listened {
-            // A late reading is compared with nothing.
-            let [now, before, earlier] = uncertain;
-            self.uncertain = [0, now, if before == WIDE { earlier } else { earlier.max(before) }];
-        }
-        self.flags &= match (listened, is_held) {
-            (true, true) => PERIOD | HELD,
-            (true, false) => PERIOD,
-            // After a late edge no other is waited for.
-            (false, _) => PERIOD | OUTSIDE,
-        };
-        Ended { listened, was_ready, is_held, unusable, echoes, uncertain }
+        let is_held = evidence == HELD && is_silent && unusable.is_none();
+        let [now, before, earlier] = uncertain;
+        self.uncertain = [0, now, if before == WIDE { earlier } else { earlier.max(before) }];
+        self.flags &= if is_held { PERIOD | HELD } else { PERIOD };
+        Ended { is_held, unusable, echoes, uncertain }
+    }
+
+    /// Takes the late edge of a firing that has ended. Returns true if its silence counts only now, too.
+    pub(super) fn end_late(&mut self) -> (Option<Micros>, bool) {
+        let (t_echo, is_held) = (self.held(), self.evidence() == HELD);
+        self.echoes = [NO_ECHO; E];
+        // After a late edge no other is waited for.
+        self.flags &= PERIOD | OUTSIDE;
+        (t_echo, is_held)
     }
 }
 
@@ -275,9 +274,7 @@ pub(super) fn off_by(uncertain: [u8; 3]) -> [Micros; 3] {
 
 /// A firing that has ended.
 pub(super) struct Ended<const E: usize> {
-    pub(super) listened: bool,
-    pub(super) was_ready: bool,
-    /// True if the silence counts only when the line has fallen; for a late edge, with it.
+    /// The silence counts when its line has fallen.
     pub(super) is_held: bool,
     /// Reason why the firing says nothing about the echo time, if it does not.
     pub(super) unusable: Option<ReadingKind>,

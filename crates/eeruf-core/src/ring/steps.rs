@@ -157,18 +157,19 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         let own = self.sensors.get_mut(usize::from(sensor))?;
         let (fired, since_before) = (own.fired(), own.firings.since_before());
         let periods_ago = own.periods_ago(self.period);
-        let Ended { listened, was_ready, is_held, unusable, echoes, uncertain } = own.end(self.listening.unwitnessed());
-        let mut ended_at = fired + self.closes_after(sensor);
-        let echoes = heard(&echoes);
+        let (listened, was_ready) = (own.is(LISTENING), own.is(READY));
         if was_ready {
-            if !listened || unusable != Some(ReadingKind::Late) {
-                ended_at = fired + echoes.first().copied().unwrap_or_default();
-            }
             // Counted when its edge came.
             self.ready = self.ready.wrapping_sub(1);
         }
         let mut firing = self.plan.last_firing(sensor, periods_ago);
         let Verdict { kind, t_echo, previous, age, explained_by } = if listened {
+            let Ended { is_held, unusable, echoes, uncertain } = own.end(self.listening.unwitnessed());
+            let mut ended_at = fired + self.closes_after(sensor);
+            let echoes = heard(&echoes);
+            if was_ready && unusable != Some(ReadingKind::Late) {
+                ended_at = fired + echoes.first().copied().unwrap_or_default();
+            }
             firing.expected_change_us = expected_change_us(sensor);
             let t_delta = self.listening.t_delta_of(&self.plan, sensor);
             let heard = Heard { sensor, fired, since_before, echoes, firing, t_delta };
@@ -205,10 +206,11 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
             }
             verdict
         } else {
+            let (t_echo, is_held) = own.end_late();
             if is_held {
                 self.judge_silence(sensor);
             }
-            let (t_echo, age) = (echoes.first().copied(), self.judge.age(sensor));
+            let age = self.judge.age(sensor);
             Verdict { kind: ReadingKind::Late, t_echo, previous: None, age, explained_by: None }
         };
         self.emit_when_oldest_ends();
@@ -296,7 +298,11 @@ struct Memory<'r, P, const E: usize, const H: usize> {
 impl<P: Plan, const E: usize, const H: usize> Sounds for Memory<'_, P, E, H> {
     #[inline(always)]
     fn explain(&self, first: Micros, second: Micros) -> Explained {
-        if self.on_time { Explained::ByNothing } else { self.explain_pair(1, first, second, Micros::ZERO) }
+        if self.on_time {
+            return Explained::ByNothing;
+        }
+        // A copy, so that nothing of it is in memory before it is asked for.
+        Self { ..*self }.explain_pair(1, first, second, Micros::ZERO)
     }
 
     fn explain_after(&self, ago: u8, first: Micros, second: Micros, more: Micros) -> Explained {

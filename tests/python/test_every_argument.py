@@ -114,8 +114,6 @@ RIGHT_OF: dict[str, dict[str, Any]] = {
     "Himm().clear": {"sensor": (0, 0, 0)},
     "Himm().echo": {"sensor": (0, 0, 0)},
 }
-# Guards, which answer for any value.
-ANSWER = {"eeruf.typing.is_kind", "eeruf.typing.is_method"}
 
 
 def callables() -> Iterator[tuple[str, Any]]:
@@ -152,7 +150,7 @@ def calls() -> Iterator[tuple[str, str, Any, tuple[Any, ...], dict[str, Any]]]:
             continue
         named = [of for of in parameters if of.kind not in (of.VAR_POSITIONAL, of.VAR_KEYWORD)]
         right = {of.name: RIGHT.get(of.name) for of in named if of.default is of.empty} | RIGHT_OF.get(name, {})
-        for of in named if name not in ANSWER else []:
+        for of in named:
             if of.kind is of.POSITIONAL_ONLY:
                 yield name, of.name, function, (object(),), {}
             else:

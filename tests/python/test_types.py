@@ -6,7 +6,6 @@ import subprocess
 import sys
 from pathlib import Path
 
-import eeruf
 import pytest
 from eeruf import sim
 
@@ -54,8 +53,3 @@ def test_stub_knows_every_keyword_that_is_changed(changes: str, taken: type) -> 
         line.target.id for line in known.body if isinstance(line, ast.AnnAssign) and isinstance(line.target, ast.Name)
     }
     assert names == set(inspect.signature(taken).parameters)
-
-
-def test_guards_know_the_literals() -> None:
-    assert eeruf.typing.is_kind("accepted") and not eeruf.typing.is_kind("acepted")
-    assert eeruf.typing.is_method("eeruf") and not eeruf.typing.is_method("eruf")

@@ -16,7 +16,9 @@ use crate::{
     results::{HeardPath, SensorId},
     scene::{Bounce, Scene},
     threads::Stop,
-    tracing::{CriticalPath, CrosstalkMatrix, CrosstalkQuery, Limits, Matters, Moved, PathsError, Tracer, reception_at},
+    tracing::{
+        CriticalPath, CrosstalkMatrix, CrosstalkQuery, Limits, Matters, Moved, PathsError, Tracer, reception_at,
+    },
     world::{Robot, World, offset},
 };
 pub(super) use bodies::Bodies;
@@ -410,7 +412,11 @@ impl Channels {
     }
 
     /// Returns whether sound matters to one of the listeners after a path of a length.
-    fn by_length<'a>(&self, listeners: &[usize], (now, arrives): (u64, Arrives<'a>)) -> impl Fn(usize, f64) -> bool + 'a {
+    fn by_length<'a>(
+        &self,
+        listeners: &[usize],
+        (now, arrives): (u64, Arrives<'a>),
+    ) -> impl Fn(usize, f64) -> bool + 'a {
         let c = self.world.scene().air().speed_of_sound();
         // A receiver that moves is reached this share of the time earlier or later at most.
         let slack_of = |&sensor: &usize| {

@@ -174,12 +174,13 @@ impl CrosstalkMatrix {
         tracer.frequency_hz = sending.frequency_hz;
         tracer.burst_cycles = sending.cycles;
         let in_room = scene.room().is_some();
-        let audibility = match &mut self.audibility {
-            Some(audibility) if audibility.is_for([&departing, &arriving], in_room) => audibility,
-            audibility => audibility.insert(Audibility::new([departing, arriving], in_room)),
-        };
         // What is certainly too faint is so however loud a panel makes it.
-        audibility.set_floor(floor / tracer.loudest(), tracer.loss_per_m(air));
+        let (patterns, faintest, loss_per_m) =
+            ([departing, arriving], floor / tracer.loudest(), tracer.loss_per_m(air));
+        let audibility = match &mut self.audibility {
+            Some(known) if known.is_for(&patterns, in_room, faintest, loss_per_m) => known,
+            audibility => audibility.insert(Audibility::new(patterns, in_room, faintest, loss_per_m)),
+        };
         for (emitter, pose) in emitters.iter().enumerate() {
             let heading_rad = pose.rotation.angle();
             audibility.aim(heading_rad, sensors.iter().map(|sensor| sensor.rotation * Vector::x()));

@@ -10,6 +10,10 @@ mod reach;
 #[cfg(test)]
 mod tests;
 
+use std::cell::RefCell;
+use std::collections::VecDeque;
+use std::sync::Arc;
+
 use crate::{
     acoustics::{Beam, Piston},
     geometry::{Point, Vector},
@@ -28,6 +32,15 @@ const REACH_M: f64 = 32.0;
 /// Emitter, receivers and threshold of one query.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Audibility {
+    tables: Arc<Tables>,
+    /// Heading of the source.
+    source: Vector,
+    receivers: Vec<Vector>,
+}
+
+/// Tables of what is just heard of an emitter by receivers of a kind.
+#[derive(Debug, PartialEq)]
+struct Tables {
     /// The emitter's and the receivers' patterns.
     pistons: [Piston; 2],
     /// True if paths rise and fall, so that they may be less far off an axis than in the plan.
@@ -43,47 +56,53 @@ pub(crate) struct Audibility {
     faint: Vec<f64>,
     /// Range of sound by its strength at departure.
     reach: Reach,
-    /// Heading of the source.
-    source: Vector,
-    receivers: Vec<Vector>,
 }
 
-impl Audibility {
-    /// Audibility for an emitter and receivers with these patterns, in a flat scene or in a room.
-    pub(crate) fn new([departing, arriving]: [Piston; 2], in_room: bool) -> Self {
-        let ahead = Vector::x();
-        Self {
-            pistons: [departing, arriving],
-            in_room,
-            departing: envelope(&departing, in_room),
-            arriving: envelope(&arriving, in_room),
-            floor: 0.0,
-            loss_per_m: 0.0,
-            faint: Vec::new(),
-            reach: Reach::default(),
-            source: ahead,
-            receivers: Vec::new(),
-        }
-    }
+thread_local! {
+    /// Tables made of late, which take longer to make than short simulations to run.
+    static KNOWN: RefCell<VecDeque<Arc<Tables>>> = const { RefCell::new(VecDeque::new()) };
+}
+/// Number of tables that are kept for each thread.
+const MOST_KNOWN: usize = 8;
 
-    pub(crate) fn is_for(&self, [departing, arriving]: [&Piston; 2], in_room: bool) -> bool {
-        self.pistons == [*departing, *arriving] && self.in_room == in_room
-    }
-
-    /// Sets the threshold amplitude, and the natural logarithm of the air's attenuation per metre.
-    pub(crate) fn set_floor(&mut self, floor: f64, loss_per_m: f64) {
-        if (self.floor, self.loss_per_m) == (floor, loss_per_m) && !self.faint.is_empty() {
-            return;
-        }
-        (self.floor, self.loss_per_m) = (floor, loss_per_m);
-        self.faint.clear();
+impl Tables {
+    fn new(pistons: [Piston; 2], in_room: bool, [floor, loss_per_m]: [f64; 2]) -> Self {
         let steps = (REACH_M * STEPS_PER_M) as usize;
-        self.faint.extend((0..=steps).map(|step| {
+        let faint = (0..=steps).map(|step| {
             let length_m = step as f64 / STEPS_PER_M;
             let faint = floor * libm::exp(-loss_per_m * length_m) * (1.0 - 1e-9);
             faint * faint
-        }));
-        self.reach = Reach::new(floor, loss_per_m);
+        });
+        let [departing, arriving] = pistons.each_ref().map(|piston| envelope(piston, in_room));
+        let (faint, reach) = (faint.collect(), Reach::new(floor, loss_per_m));
+        Self { pistons, in_room, departing, arriving, floor, loss_per_m, faint, reach }
+    }
+
+    fn is_for(&self, pistons: &[Piston; 2], in_room: bool, floor_and_loss: [f64; 2]) -> bool {
+        self.pistons == *pistons && self.in_room == in_room && [self.floor, self.loss_per_m] == floor_and_loss
+    }
+}
+
+impl Audibility {
+    /// For an emitter and receivers with these patterns, in a flat scene or in a room; for the amplitude that is just
+    /// heard, and the natural logarithm of what the air leaves of one per metre.
+    pub(crate) fn new(pistons: [Piston; 2], in_room: bool, floor: f64, loss_per_m: f64) -> Self {
+        let floor_and_loss = [floor, loss_per_m];
+        let tables = KNOWN.with_borrow_mut(|known| {
+            let found = known.iter().find(|tables| tables.is_for(&pistons, in_room, floor_and_loss)).cloned();
+            found.unwrap_or_else(|| {
+                let made = Arc::new(Tables::new(pistons, in_room, floor_and_loss));
+                known.truncate(MOST_KNOWN - 1);
+                known.push_front(Arc::clone(&made));
+                made
+            })
+        });
+        Self { tables, source: Vector::x(), receivers: Vec::new() }
+    }
+
+    /// Returns true if it is for these patterns, and for this amplitude and loss.
+    pub(crate) fn is_for(&self, pistons: &[Piston; 2], in_room: bool, floor: f64, loss_per_m: f64) -> bool {
+        self.tables.is_for(pistons, in_room, [floor, loss_per_m])
     }
 
     /// Sets the headings of source and receivers.
@@ -95,32 +114,42 @@ impl Audibility {
 
     /// Sound of the source by direction.
     pub(crate) fn of_source(&self) -> Aim<'_> {
-        Aim { envelope: &self.departing, reach: &self.reach, axis: self.source, beam: self.pistons[0].beam }
+        Aim {
+            envelope: &self.tables.departing,
+            reach: &self.tables.reach,
+            axis: self.source,
+            beam: self.tables.pistons[0].beam,
+        }
     }
 
     /// Hearing of a receiver by direction, as if sound went the other way. `None` if everything counts as heard.
     pub(crate) fn of_receiver(&self, receiver: usize) -> Option<Aim<'_>> {
-        let axis = *self.receivers.get(receiver).filter(|_| self.floor > 0.0)?;
-        Some(Aim { envelope: &self.arriving, reach: &self.reach, axis, beam: self.pistons[1].beam })
+        let axis = *self.receivers.get(receiver).filter(|_| self.tables.floor > 0.0)?;
+        Some(Aim {
+            envelope: &self.tables.arriving,
+            reach: &self.tables.reach,
+            axis,
+            beam: self.tables.pistons[1].beam,
+        })
     }
 
     /// Upper bound on the square of the emitter's pattern, by the cosine of the angle off its axis.
     #[inline]
     fn sent(&self, cos: f64) -> f64 {
-        at_cos(&self.departing, cos)
+        at_cos(&self.tables.departing, cos)
     }
 
     /// Returns the share of amplitude that a receiver's pattern leaves.
     #[inline]
     fn heard(&self, cos: f64) -> f64 {
-        at_cos(&self.arriving, cos)
+        at_cos(&self.tables.arriving, cos)
     }
 
     /// Least square of an amplitude that is heard after this length, without the air.
     #[inline]
     fn faint(&self, length_m: f64) -> f64 {
-        let step = ((length_m * STEPS_PER_M) as usize).min(self.faint.len().saturating_sub(1));
-        self.faint.get(step).copied().unwrap_or(0.0)
+        let step = ((length_m * STEPS_PER_M) as usize).min(self.tables.faint.len().saturating_sub(1));
+        self.tables.faint.get(step).copied().unwrap_or(0.0)
     }
 
     /// Returns true if a path over walls may be heard: it leaves at an angle with this cosine off the source's axis,
@@ -163,14 +192,14 @@ impl Audibility {
 
     /// The longest path, in metres, after which sound may be heard whose amplitude is at most `most` over its length.
     pub(crate) fn reach_m(&self, most: f64) -> f64 {
-        self.reach.at((most * most).min(1.0))
+        self.tables.reach.at((most * most).min(1.0))
     }
 
     /// Returns true if sound that leaves in the direction `out` may be heard after `least_m` or more, if its amplitude
     /// is at most `most` over its length, without the patterns.
     #[inline]
     pub(crate) fn may_ensonify(&self, most: f64, out: Vector, least_m: f64) -> bool {
-        if !(self.floor > 0.0 && least_m > 0.0) {
+        if !(self.tables.floor > 0.0 && least_m > 0.0) {
             return true;
         }
         let cos = out.dot(&self.source) / out.norm();

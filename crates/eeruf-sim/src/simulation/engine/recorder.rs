@@ -14,8 +14,8 @@ use crate::{
     results::{Cause, HeardPath, NO_PATH, Readings, SensorId},
 };
 
-/// More readings than all rings of a world emit at one moment.
-const ROOM: usize = 1 << 13;
+/// Number of readings of a sensor that fit at any moment: more than rings give at one.
+const ROOM: usize = 4;
 
 /// Recorder of the readings.
 pub(crate) struct Recorder {
@@ -63,13 +63,14 @@ impl Recorder {
         self.readings.is_empty()
     }
 
-    /// Reserves room for a few thousand more.
+    /// Makes sure that some more of each sensor fit.
     pub(crate) fn make_room(&mut self) -> Result<(), SimulationError> {
-        if self.readings.room() >= ROOM {
+        let least = ROOM * self.ids.len();
+        if self.readings.room() >= least {
             return Ok(());
         }
         let readings = self.readings.len();
-        let more = readings.max(ROOM);
+        let more = readings.max(2 * least);
         self.readings.try_reserve(more).map_err(|_| SimulationError::Memory { readings: (readings + more) as u64 })
     }
 

@@ -344,7 +344,7 @@ impl CrosstalkMatrix {
 pub(crate) struct Moved {
     /// The emitters' and the receivers' patterns.
     pub(crate) patterns: [Piston; 2],
-    /// As [`CrosstalkQuery::coupling`].
+    /// The query's [`coupling`](CrosstalkQuery::coupling).
     pub(crate) coupling: f64,
 }
 

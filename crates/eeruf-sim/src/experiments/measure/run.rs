@@ -97,6 +97,8 @@ pub fn measure(
     }
     let progress = Progress::new(jobs.len() as u64, keep_going);
     let robot = &first.way.robot;
+    // A control may need what comes after the thing is seen.
+    let until_seen = ways.iter().all(|(_, control)| control.is_none());
     let runs = sweep(&jobs, |&(condition, room)| {
         let trial = Trial::new(room, robot, condition, asked.speeds)?;
         // Controls of one way share its readings.
@@ -105,7 +107,7 @@ pub fn measure(
         for (MeasuredWay { way, .. }, control) in ways {
             let mut heard = match last.take().filter(|(before, _)| *before == way) {
                 Some((_, heard)) => heard,
-                None => match trial.heard(way, &|| progress.go_on()) {
+                None => match trial.heard(way, until_seen, &|| progress.go_on()) {
                     Err(ExperimentError::Simulation(error)) => {
                         sights.push(Err(error.to_string()));
                         continue;

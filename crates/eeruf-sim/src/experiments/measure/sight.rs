@@ -49,13 +49,7 @@ impl Trial {
         let of_sensor = |sensor| heard.iter().filter(move |one| one.sensor == sensor).copied().collect::<Vec<_>>();
         let by_sensor: Vec<Vec<Heard>> = (0..sensors).map(of_sensor).collect();
         let beliefs: Vec<Vec<Believed>> = by_sensor.iter().map(|heard| believed(heard, setting, life_s)).collect();
-        let mut seen: Vec<&Believed> = beliefs.iter().flatten().collect();
-        seen.sort_by(|one, other| one.heard.ready_s.total_cmp(&other.heard.ready_s));
-        let latency_ms = self.thing.as_ref().map_or(f64::NAN, |_| {
-            let first = seen.iter().find(|belief| self.sees(robot, belief));
-            let late_s = first.map_or(f64::INFINITY, |belief| belief.heard.ready_s - self.appears_s);
-            if late_s > NEVER_S { f64::INFINITY } else { 1e3 * late_s }
-        });
+        let latency_ms = self.latency_ms(robot, beliefs.iter().flatten());
         let mut false_ones: Vec<[f64; 2]> = vec![];
         let (mut foreign_s, mut right_s, mut echo_s) = (0.0, 0.0, 0.0);
         let (mut blind, mut right_echoes) = (0, 0);
@@ -69,7 +63,7 @@ impl Trial {
                     false_ones.push(lasts);
                 }
             }
-            let mut right = 0;
+            let (mut right, mut watched) = (0, 0);
             let mut beliefs = beliefs.iter().peekable();
             let mut belief: Option<&Believed> = None;
             for (k, reading) in heard.iter().enumerate().take_while(|(_, reading)| reading.ready_s < self.appears_s) {
@@ -80,6 +74,7 @@ impl Trial {
                 let next_s = heard.get(k + 1).map_or(self.appears_s, |next| next.ready_s.min(self.appears_s));
                 let is_right = belief.is_some_and(|belief| agree(belief.t_echo_us, reading.reference_us));
                 right += usize::from(is_right);
+                watched += 1;
                 if !reading.reference_us.is_nan() {
                     right_echoes += usize::from(is_right && is_new);
                     echo_s += next_s - reading.ready_s;
@@ -87,7 +82,7 @@ impl Trial {
                     right_s += if is_right { (until_s - reading.ready_s).max(0.0) } else { 0.0 };
                 }
             }
-            blind += u32::from((right as f64) < BLIND * heard.len() as f64);
+            blind += u32::from((right as f64) < BLIND * f64::from(watched));
         }
         Sight {
             latency_ms,
@@ -100,7 +95,32 @@ impl Trial {
         }
     }
 
-    /// Returns true if a belief is in the thing, and its sensor would read the thing alone.
+    /// From the thing's appearing to the first of these beliefs in it; NaN without a thing.
+    fn latency_ms<'b>(&self, robot: &Robot, beliefs: impl Iterator<Item = &'b Believed>) -> f64 {
+        if self.thing.is_none() {
+            return f64::NAN;
+        }
+        let mut after: Vec<_> = beliefs.filter(|belief| belief.heard.fired_s >= self.appears_s).collect();
+        after.sort_by(|one, other| one.heard.ready_s.total_cmp(&other.heard.ready_s));
+        let first = after.iter().find(|belief| self.sees(robot, belief));
+        let late_s = first.map_or(f64::INFINITY, |belief| belief.heard.ready_s - self.appears_s);
+        if late_s > NEVER_S { f64::INFINITY } else { 1e3 * late_s }
+    }
+
+    /// Returns true if every setting has seen the thing by these readings, which are all until a time but for those of
+    /// sensors that still listen then.
+    pub(super) fn is_seen(&self, robot: &Robot, heard: &[Heard], until_s: f64) -> bool {
+        let of_sensor = |sensor| heard.iter().filter(move |one| one.sensor == sensor).copied().collect::<Vec<_>>();
+        let by_sensor: Vec<Vec<Heard>> = (0..robot.sensors.len()).map(of_sensor).collect();
+        let life_s = Control::life_s(None, self.life_s());
+        let known_ms = 1e3 * (until_s - self.appears_s) - 1e-3 * f64::from(robot.window.as_micros());
+        Setting::ALL.iter().all(|&setting| {
+            let beliefs: Vec<_> = by_sensor.iter().flat_map(|heard| believed(heard, setting, life_s)).collect();
+            self.latency_ms(robot, beliefs.iter()) < known_ms
+        })
+    }
+
+    /// Returns true if it is a belief in the thing, of a sensor that alone would read it.
     fn sees(&self, robot: &Robot, belief: &Believed) -> bool {
         let Believed { heard, t_echo_us, .. } = belief;
         let Some(thing) = self.thing.as_ref().filter(|_| heard.fired_s >= self.appears_s) else { return false };

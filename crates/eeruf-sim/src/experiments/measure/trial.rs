@@ -14,7 +14,7 @@ use crate::{
     methods::Method,
     results::Readings,
     scene::{Room, Scene, SceneError},
-    simulation::{Options, Simulation},
+    simulation::{Options, SharedPaths, Simulation},
     threads::Stop,
     world::{Random, Robot, World, WorldError},
 };
@@ -30,7 +30,12 @@ pub const NEVER_S: f64 = 5.0;
 const LONGEST_S: f64 = APPEARS_S[1] + NEVER_S;
 /// The random key of trials, beside those of the kinds of rooms.
 const THING: u64 = 200;
-/// Interval between two checks for contact, in seconds.
+/// Paths of a robot that moves are searched for again after this way in metres, and after this turn in degrees.
+const STEP_M: f64 = 0.06;
+const STEP_DEG: f64 = 6.0;
+/// Times after the thing's appearing at which a trial may end, as it is seen, in seconds.
+const LOOKS_S: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 3.5];
+/// From one look for contact to the next, in seconds.
 const LOOK_S: f64 = 0.01;
 
 /// A robot's motion.
@@ -110,6 +115,8 @@ pub(super) struct Trial {
     /// The robot's speeds, at most one of which is not 0.
     pub(super) speeds: Speeds,
     pub(super) c: f64,
+    /// Paths before the thing appears, and after, of a robot that moves.
+    shared: Option<[Arc<SharedPaths>; 2]>,
 }
 
 impl Trial {
@@ -148,14 +155,16 @@ impl Trial {
 
     fn drawn(plan: RoomPlan, world: &World, speeds: Speeds, appears_s: f64, random: Random) -> Self {
         let c = world.scene().air().speed_of_sound();
-        let mut trial =
-            Self { plan, thing: None, draws: Draws::default(), appears_s, ends_s: appears_s + NEVER_S, speeds, c };
+        let moves = speeds.speed_m_s > 0.0 || speeds.turn_rad_s != 0.0;
+        let step_s = (STEP_M / speeds.speed_m_s).min(STEP_DEG.to_radians() / speeds.turn_rad_s.abs());
+        let shared = moves.then(|| [(); 2].map(|()| Arc::new(SharedPaths::new(step_s))));
+        let (draws, ends_s) = (Draws::default(), appears_s + NEVER_S);
+        let mut trial = Self { plan, thing: None, draws, appears_s, ends_s, speeds, c, shared };
         let pose = trial.pose(world, appears_s);
         let drawn = Thing::draw(random, &trial.plan, world, &pose, &mut trial.draws);
         let Some(thing) = drawn else { return trial };
         let looks = (1..=(NEVER_S / LOOK_S) as u32).map(|look| appears_s + LOOK_S * f64::from(look));
         let touches = |at: &f64| thing.touches(&world.robots()[0], &trial.pose(world, *at));
-        let moves = speeds.speed_m_s > 0.0 || speeds.turn_rad_s != 0.0;
         let contact = looks.into_iter().find(touches).filter(|_| moves);
         trial.ends_s = contact.map_or(trial.ends_s, |contact| contact - LOOK_S);
         trial.thing = Some(thing);
@@ -183,12 +192,19 @@ impl Trial {
         (0.15 / speed_m_s).min(10f64.to_radians() / turn_rad_s.abs()).min(2.0)
     }
 
-    /// Readings of the first robot with a way of firing, in the order in which they were complete.
-    pub(super) fn heard(&self, way: &RoomWay, keep_going: &dyn Fn() -> bool) -> Result<Vec<Heard>, ExperimentError> {
+    /// Readings of the first robot by a way of firing, in the order in which they were complete; if asked, no more
+    /// than are needed to see the thing.
+    pub(super) fn heard(
+        &self,
+        way: &RoomWay,
+        until_seen: bool,
+        keep_going: &dyn Fn() -> bool,
+    ) -> Result<Vec<Heard>, ExperimentError> {
         let Speeds { speed_m_s, turn_rad_s } = self.speeds;
         let world = self.plan.moving(&way.robot, speed_m_s, turn_rad_s)?.with_room(Some(Room::DEFAULT))?;
         let world = Arc::new(world.with_physics(Physics::DEFAULT)?);
-        self.heard_in(&world, (way.method, &way.options), |thing, _| thing.scene(&self.plan), keep_going)
+        let (how, shared) = ((way.method, &way.options), self.shared.as_ref());
+        self.heard_in(&world, how, |thing, _| thing.scene(&self.plan), (until_seen, shared), keep_going)
     }
 
     /// Readings in a scene of the caller's, by a method.
@@ -199,7 +215,7 @@ impl Trial {
         keep_going: &dyn Fn() -> bool,
     ) -> Result<Vec<Heard>, ExperimentError> {
         let options = Options { seed: Some(self.plan.number), ..Options::default() };
-        self.heard_in(&Arc::new(world.clone()), (method, &options), Thing::added_to, keep_going)
+        self.heard_in(&Arc::new(world.clone()), (method, &options), Thing::added_to, (true, None), keep_going)
     }
 
     fn heard_in(
@@ -207,30 +223,60 @@ impl Trial {
         world: &Arc<World>,
         (method, options): (Method, &Options),
         with: impl Fn(&Thing, &Scene) -> Result<Scene, SceneError>,
+        (until_seen, shared): (bool, Option<&[Arc<SharedPaths>; 2]>),
         keep_going: &dyn Fn() -> bool,
     ) -> Result<Vec<Heard>, ExperimentError> {
-        let (speed_m_s, window) = (self.speeds.speed_m_s, world.robots()[0].window);
+        let (speed_m_s, robot) = (self.speeds.speed_m_s, &world.robots()[0]);
         let mut simulation = Simulation::new(Arc::clone(world), method, options, Stop::default())?;
-        // Ends of legs, and the thing's appearing.
+        if let Some([before, _]) = shared {
+            simulation.share(Arc::clone(before));
+        }
         let legs = self.leg_s().map_or(0, |leg_s| (self.ends_s / leg_s) as u32);
-        let turns = (1..=legs).map(|leg| (self.leg_s().unwrap_or_default() * f64::from(leg), Some(leg)));
-        let mut events: Vec<_> = turns.chain([(self.appears_s, None)]).collect();
+        let turns = (1..=legs).map(|leg| (self.leg_s().unwrap_or_default() * f64::from(leg), Event::Turns(leg)));
+        let looks = LOOKS_S.map(|late_s| (self.appears_s + late_s, Event::Looks)).into_iter();
+        let looks = looks.filter(|(at_s, _)| until_seen && *at_s < self.ends_s);
+        let ends = [(self.appears_s, Event::Appears), (self.ends_s, Event::Ends)];
+        let mut events: Vec<_> = turns.chain(looks).chain(ends).collect();
         events.sort_by(|one, other| one.0.total_cmp(&other.0));
-        let mut parts: Vec<Readings> = vec![];
-        for (at_s, turn) in events {
-            parts.push(simulation.step((at_s - simulation.time_s()).max(0.0), |_| keep_going())?);
-            match (turn, &self.thing) {
-                (Some(leg), _) if leg % 2 == 1 => simulation.set_velocity(0, -speed_m_s, 0.0)?,
-                (Some(_), _) => simulation.set_velocity(0, speed_m_s, 0.0)?,
-                (None, Some(thing)) => {
+        let mut heard: Vec<Heard> = vec![];
+        for (at_s, event) in events {
+            let part: Readings = simulation.step((at_s - simulation.time_s()).max(0.0), |_| keep_going())?;
+            heard.extend(Heard::all(&part, robot.window));
+            match (event, &self.thing) {
+                (Event::Turns(leg), _) if leg % 2 == 1 => simulation.set_velocity(0, -speed_m_s, 0.0)?,
+                (Event::Turns(_), _) => simulation.set_velocity(0, speed_m_s, 0.0)?,
+                (Event::Appears, Some(thing)) => {
                     simulation.change_scene(with(thing, world.scene()).map_err(WorldError::from)?)?;
+                    if let Some([_, after]) = shared {
+                        simulation.share(Arc::clone(after));
+                    }
                 }
-                (None, None) => {}
+                (Event::Looks, _) if self.is_seen(robot, sorted(&mut heard), at_s) => break,
+                (Event::Ends, _) => break,
+                (Event::Appears, None) if until_seen => break,
+                (Event::Looks | Event::Appears, _) => {}
             }
         }
-        parts.push(simulation.step((self.ends_s - simulation.time_s()).max(0.0), |_| keep_going())?);
-        let mut heard: Vec<Heard> = parts.iter().flat_map(|part| Heard::all(part, window)).collect();
-        heard.sort_by(|one, other| one.ready_s.total_cmp(&other.ready_s));
+        sorted(&mut heard);
         Ok(heard)
     }
+}
+
+/// An event of a trial.
+#[derive(Clone, Copy, Debug)]
+enum Event {
+    /// The robot is at the end of this leg of its way.
+    Turns(u32),
+    /// The thing appears.
+    Appears,
+    /// The trial ends if the thing is seen.
+    Looks,
+    /// The trial ends.
+    Ends,
+}
+
+/// Readings in the order in which they were complete.
+fn sorted(heard: &mut [Heard]) -> &[Heard] {
+    heard.sort_by(|one, other| one.ready_s.total_cmp(&other.ready_s));
+    heard
 }

@@ -273,8 +273,8 @@ impl Channels {
         traced
     }
 
-    /// Looks for the channels from an emitter as [`trace`](Self::trace) does, but along the paths that there were at the
-    /// nearest instant at which they are shared.
+    /// Looks for the channels from an emitter as [`trace`](Self::trace) does, but along the paths that there were at
+    /// the nearest instant at which they are shared.
     fn trace_shared(
         &mut self,
         shared: &SharedPaths,
@@ -285,19 +285,20 @@ impl Channels {
         mut found: impl FnMut(usize, Channel),
     ) -> Result<(), PathsError> {
         let at = shared.instant(now);
-        let snapshot = match shared.get(at, emitter) {
+        self.set_poses(at, kinematics);
+        // Whoever found them was where this one is at that instant.
+        let snapshot = match shared.get(at, emitter).filter(|known| known.poses == self.poses) {
             Some(known) => known,
             None => {
-                self.set_poses(at, kinematics);
                 let mut snapshot = Snapshot { poses: self.poses.clone(), groups: vec![] };
                 for listeners in self.hearing(emitter, receivers) {
                     self.search(&[emitter], &listeners, None)?;
                     snapshot.groups.push((listeners, self.matrix.clone()));
                 }
-                self.set_poses(now, kinematics);
                 shared.put(at, emitter, snapshot)
             }
         };
+        self.set_poses(now, kinematics);
         for (listeners, matrix) in &snapshot.groups {
             self.hand_out(&[emitter], listeners, matrix, Some(&snapshot.poses), matters, &mut found);
         }

@@ -9,9 +9,9 @@ use crate::{geometry::Pose, tracing::CrosstalkMatrix};
 /// Paths found so far in one scene. Simulations that share them differ in how robots fire and listen alone.
 #[derive(Debug)]
 pub(crate) struct SharedPaths {
-    /// From one instant to the next, in nanoseconds.
+    /// Time from one instant to the next, in nanoseconds.
     step: u64,
-    /// By instant and emitter.
+    /// Snapshots by instant and emitter.
     found: Mutex<HashMap<(u64, usize), Arc<Snapshot>>>,
 }
 
@@ -25,7 +25,7 @@ pub(super) struct Snapshot {
 }
 
 impl SharedPaths {
-    /// No paths yet, at instants this many seconds apart.
+    /// Returns an empty set, for instants this many seconds apart.
     pub(crate) fn new(step_s: f64) -> Self {
         Self { step: ((step_s * 1e9) as u64).max(1), found: Mutex::default() }
     }
@@ -44,5 +44,55 @@ impl SharedPaths {
         let mut found = self.found.lock().unwrap_or_else(PoisonError::into_inner);
         found.insert((at, emitter), Arc::clone(&snapshot));
         snapshot
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use std::sync::Arc;
+
+    use super::SharedPaths;
+    use crate::*;
+
+    /// Readings alone and in fact of a robot that drives, and then turns, in a room.
+    fn read(shared: Option<&Arc<SharedPaths>>) -> Vec<[f64; 2]> {
+        let corners = [[-2.5, -2.0], [2.5, -2.0], [2.5, 2.0], [-2.5, 2.0], [-2.5, -2.0]];
+        let scene = Scene::new(Wall::polyline(&corners).collect(), vec![Pole::new(1.2, 1.0, 0.06)], Air::default());
+        let robot = Robot::ring(Pose::identity(), 8, 0.785, 0.2, Transducer::HC_SR04);
+        let world = World::new(scene.unwrap(), vec![robot], Noise::default()).unwrap();
+        let world = world.with_physics(Physics::DEFAULT).unwrap();
+        let options = Options::default();
+        let mut simulation = Simulation::new(Arc::new(world), Method::Sequential, &options, Stop::default()).unwrap();
+        if let Some(shared) = shared {
+            simulation.share(Arc::clone(shared));
+        }
+        let mut read = vec![];
+        for (v_m_s, w_rad_s) in [(0.5, 0.0), (0.0, 0.8)] {
+            simulation.set_velocity(0, v_m_s, w_rad_s).unwrap();
+            let readings = simulation.step(2.0, |_| true).unwrap();
+            read.extend(readings.reference_us.iter().zip(&readings.earliest_us).map(|(one, other)| [*one, *other]));
+        }
+        read
+    }
+
+    // 30 us are 5 mm. A robot that drives is 30 mm, 175 us, farther on after 60 ms.
+    #[test]
+    fn shared_paths_are_carried_on_to_each_firing() {
+        let exact = read(None);
+        let shared = Arc::new(SharedPaths::new(0.12));
+        let carried = read(Some(&shared));
+        assert_eq!(exact.len(), carried.len());
+        for index in 0..2 {
+            let pairs: Vec<_> = exact.iter().zip(&carried).map(|(one, other)| [one[index], other[index]]).collect();
+            let agrees = |[one, other]: &[f64; 2]| (one - other).abs() < 30.0 || (one.is_nan() && other.is_nan());
+            let agree = pairs.iter().filter(|pair| agrees(pair)).count();
+            let heard = pairs.iter().filter(|[one, other]| !one.is_nan() && !other.is_nan()).count();
+            assert!(heard > 40 && agree * 100 > pairs.len() * 95, "{agree}, {heard} of {}: {pairs:?}", pairs.len());
+        }
+        // Whoever asks next finds what was found.
+        let known = shared.found.lock().unwrap().len();
+        assert!(known > 40, "{known}");
+        assert_eq!(read(Some(&shared)), carried);
+        assert_eq!(shared.found.lock().unwrap().len(), known);
     }
 }

@@ -9,7 +9,7 @@ use super::table::{markdown, or_dash};
 
 /// The table of costs with the best way under each condition, and what is recommended.
 pub(crate) fn describe(answer: &CostAnswer) -> String {
-    let CostAnswer { recommended, draw, speed_m_s, turn_deg_s, kinds, elsewhere } = answer;
+    let CostAnswer { recommended, draw, speed_m_s, turn_deg_s, kinds, elsewhere, .. } = answer;
     let conditions = kinds.iter().map(|kind| &kind.best).max_by_key(|best| best.len());
     let mut header = vec!["kind", "cost"];
     header.extend(conditions.into_iter().flatten().map(|best| best.condition));

@@ -3,8 +3,8 @@
 
 use eeruf_sim::Robot;
 use eeruf_sim::experiments::measure::{
-    Cell, Condition, Costs, Estimate, Family, MeasureAsked, Measured, MeasuredWay, ONE_A_MINUTE, Operating, Speeds,
-    Under, measure, measured_ways,
+    Cell, Condition, Costs, Estimate, Family, MeasureAsked, Measured, MeasuredWay, Moving, ONE_A_MINUTE, Operating,
+    Speeds, Under, measure, measured_ways,
 };
 use eeruf_sim::experiments::rooms::with_other_gain;
 use serde::Serialize;
@@ -35,6 +35,8 @@ pub struct CostAnswer {
     pub turn_deg_s: f64,
     /// The kinds of ways, the simplest first.
     pub kinds: Vec<KindCost>,
+    /// The recommended kind under each condition.
+    pub conditions: Vec<UnderCondition>,
     /// The kind to recommend where the ring is used under one condition alone, or its modules have the other gain.
     pub elsewhere: Vec<(String, Option<String>)>,
 }
@@ -67,7 +69,30 @@ pub struct BestWay {
     pub figures: Cell,
 }
 
-/// Measurements in the rooms for choosing votes, and in the rooms for reports.
+/// A kind of way under a condition, each figure with its 95 % interval.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct UnderCondition {
+    /// The condition's name.
+    pub condition: &'static str,
+    /// The way's name.
+    pub way: &'static str,
+    /// Votes that its readings need.
+    pub votes: String,
+    /// The time in which 95 % of what appears is seen, in ms; infinite, and null in JSON, if less is.
+    pub t95_ms: f64,
+    /// Interval of that time.
+    pub t95_ms_95: [f64; 2],
+    /// The way that a robot drives in that time, in metres; none if it does not drive.
+    pub blind_travel_m: Option<f64>,
+    /// Interval of that way.
+    pub blind_travel_m_95: Option<[f64; 2]>,
+    /// False stops a minute.
+    pub false_stops_per_min: f64,
+    /// Interval of those.
+    pub false_stops_per_min_95: [f64; 2],
+}
+
+/// Measurements in rooms for choosing votes, and in those that are reported.
 struct Both {
     chosen: Measured,
     measured: Measured,
@@ -105,6 +130,30 @@ impl Both {
             })
         };
         chosen.under.iter().zip(&measured.under).filter_map(of).collect()
+    }
+}
+
+impl Both {
+    /// A kind of way under each condition.
+    fn conditions(&self, family: Family) -> Vec<UnderCondition> {
+        let of = |(best, under): (BestWay, &Under)| {
+            let Cell { t95_ms, false_stops_per_min, .. } = best.figures;
+            let drives = under.condition.moving == Moving::Driving;
+            let speed_m_s = under.places.iter().map(|place| place.speed_m_s).sum::<f64>() / under.places.len() as f64;
+            let travel_m = |t95_ms: f64| 1e-3 * t95_ms * speed_m_s;
+            UnderCondition {
+                condition: best.condition,
+                way: best.way,
+                votes: best.votes,
+                t95_ms: t95_ms.value,
+                t95_ms_95: t95_ms.interval_95,
+                blind_travel_m: drives.then(|| travel_m(t95_ms.value)),
+                blind_travel_m_95: drives.then(|| t95_ms.interval_95.map(travel_m)),
+                false_stops_per_min: false_stops_per_min.value,
+                false_stops_per_min_95: false_stops_per_min.interval_95,
+            }
+        };
+        self.best(family).into_iter().zip(&self.measured.under).map(of).collect()
     }
 }
 
@@ -175,6 +224,7 @@ impl RingSpec {
             draw: draw.map(name_of),
             speed_m_s,
             turn_deg_s,
+            conditions: recommended.map_or(vec![], |family| here.conditions(Family::ALL[family])),
             kinds: kinds.collect(),
             elsewhere,
         })

@@ -79,7 +79,7 @@ pub use what_if::WhatIf;
 #[cfg(feature = "rooms")]
 pub use {
     asked::RoomsAsked,
-    cost::{BestWay, CHOICE, CostAnswer, KindCost},
+    cost::{BestWay, CHOICE, CostAnswer, KindCost, UnderCondition},
     flow::{FlowDesign, needs_to_see_m, turns_of},
     rooms::{RoomRobot, RoomsAnswer, RoomsJson},
     way::{How, Way},

@@ -22,9 +22,7 @@ SIZE_IS(EerufEdge, 7);
 #endif
 SIZE_IS(EerufSensor, 14 + PADDING + 4 * EERUF_FIRINGS);
 SIZE_IS(EerufLine, 8);
-#if EERUF_WITH_FLOW
 SIZE_IS(EerufFlowSensor, 42 + PADDING);
-#endif
 
 #ifdef __AVR__
 #define READ8(place) pgm_read_byte(&(place))
@@ -280,12 +278,6 @@ EerufStatus eeruf_schedule_check(const EerufSchedule *schedule) {
 #define RUN 0x0fu
 #define DISABLED 0x80u /* of a ring's sensor, kept in the same byte */
 
-const char *eeruf_reading_name(uint8_t kind) {
-    static const char *const NAMES[] = {"first", "accepted", "rejected", "repeated", "no_echo", "clear", "too_early",
-                                        "late", "stuck", "tentative", "ambiguous", "unanswered"};
-    return kind < EERUF_READING_KINDS ? NAMES[kind] : "?";
-}
-
 static void forget(EerufFilter *filter) {
     filter->known_us = EERUF_NO_ECHO;
     filter->state &= DISABLED;
@@ -362,9 +354,7 @@ static bool shift(uint32_t *t_echo_us, uint32_t later_us) {
 
 /* Flow rings fire otherwise than by a table. What is linked for all takes `flows` as a constant, so that nothing of the
    one kind is linked where only the other is polled; FLOWS asks the ring. */
-#if EERUF_WITH_FLOW
 #define FLOWS(ring) ((ring)->consecutive == 0)
-#define STRIDE(ring) ((ring)->stride)
 #define FLOW_FIRINGS 3u /* fewer explain nothing, more add nothing */
 static void fire_flow(EerufRing *ring, uint8_t sensor, uint32_t now_us);
 static void correct_flow(EerufRing *ring, uint8_t x, uint32_t later_us);
@@ -373,18 +363,6 @@ static void decide_from(EerufRing *ring, uint32_t now_us);
 static void end_round(EerufRing *ring, uint32_t now_us);
 static void restart_flow(EerufRing *ring, uint32_t now_us);
 static uint32_t horizon_of_flow(const EerufRing *ring);
-#else
-#define FLOWS(ring) false
-#define STRIDE(ring) sizeof(EerufSensor)
-#define FLOW_FIRINGS EERUF_FIRINGS
-#define fire_flow(ring, sensor, now_us) ((void)0)
-#define correct_flow(ring, x, later_us) ((void)0)
-#define judge(ring, x, reading) ((void)0)
-#define decide_from(ring, now_us) ((void)(now_us))
-#define end_round(ring, now_us) ((void)0)
-#define restart_flow(ring, now_us) ((void)0)
-#define horizon_of_flow(ring) 0u
-#endif
 #define FIRINGS(flows) ((flows) ? FLOW_FIRINGS : EERUF_FIRINGS)
 
 static void emit_when_oldest_ends(EerufRing *ring);
@@ -394,7 +372,7 @@ static EerufSensor *after(const EerufSensor *sensor, size_t bytes) {
 }
 
 static OUT_OF_LINE EerufSensor *sensor_of(const EerufRing *ring, uint8_t sensor) {
-    return after(ring->sensors, (size_t)sensor * STRIDE(ring));
+    return after(ring->sensors, (size_t)sensor * ring->stride);
 }
 
 static void count(EerufRing *ring, uint8_t kind) {
@@ -513,7 +491,6 @@ static OUT_OF_LINE void fired_late(EerufRing *ring, uint16_t late_us, bool flows
     if (READ32(ring->schedule->separation_us) < needed_us) ring->watched = WATCHED;
 }
 
-#if EERUF_FIRINGS > 1 || EERUF_WITH_FLOW
 /* The sensor whose sound could be both echoes of a receiver, by a path that changes by up to `more` than P: the one heard
    `first_us` after the firing before its last, and the one heard `second_us` after its last. */
 static OUT_OF_LINE uint8_t explanation(const EerufRing *ring, uint8_t receiver, uint32_t first_us, uint32_t second_us,
@@ -545,11 +522,10 @@ static OUT_OF_LINE uint8_t explanation(const EerufRing *ring, uint8_t receiver, 
                 if (*fired - *before - between + change <= 2 * change) return x;
             }
         }
-        sensor = after(sensor, STRIDE(ring));
+        sensor = after(sensor, ring->stride);
         x++;
     }
 }
-#endif
 
 static bool is_long_ago(uint32_t instant, uint32_t now_us) {
     return now_us - instant - LONG_AGO - 1u < 0u - STEP_BACK - LONG_AGO - 1u;
@@ -811,7 +787,7 @@ static void find_oldest(EerufRing *ring, uint32_t before) {
         return;
     }
     before -= STEP_BACK;
-    for (x = 0; x < ring->count; x++, sensor = after(sensor, STRIDE(ring))) {
+    for (x = 0; x < ring->count; x++, sensor = after(sensor, ring->stride)) {
         const uint32_t since = sensor->fired_us[0] - before;
         if ((sensor->filter.flags & LISTENING) && since < soonest) {
             oldest = x;
@@ -988,13 +964,9 @@ static IN_LINE void restart(EerufRing *ring, uint32_t now_us, bool flows) {
 static OUT_OF_LINE void restart_by_table(EerufRing *ring, uint32_t now_us) {
     restart(ring, now_us, false);
 }
-#if EERUF_WITH_FLOW
 static OUT_OF_LINE void restart_by_flow(EerufRing *ring, uint32_t now_us) {
     restart(ring, now_us, true);
 }
-#else
-#define restart_by_flow restart_by_table
-#endif
 
 /* Firing comes first, since it should be on time; but a sensor's reading is emitted before it fires again. */
 static IN_LINE EerufStatus poll(EerufRing *ring, uint32_t now_us, const int32_t *change_us, EerufEvent *event,
@@ -1309,9 +1281,7 @@ EerufStatus eeruf_ring_restart(EerufRing *ring, uint32_t now_us) {
 
 /* No sensor fires again within this time. */
 static uint32_t least_refire(const EerufRing *ring) {
-#if EERUF_WITH_FLOW
     if (FLOWS(ring)) return longer(((const EerufFlowRing *)(const void *)ring)->rest_us, ring->window_us);
-#endif
     return READ32(ring->schedule->min_refire_us);
 }
 
@@ -1469,10 +1439,6 @@ uint32_t eeruf_distance_mm(uint32_t t_echo_us, uint32_t c_mm_s) {
     return multiply_divide(t_echo_us, c_mm_s, 1000000u, 2000000u);
 }
 
-uint32_t eeruf_echo_time_us(uint32_t distance_mm, uint32_t c_mm_s) {
-    return c_mm_s == 0 ? UINT32_MAX : multiply_divide(distance_mm, 2000000u, c_mm_s / 2, c_mm_s);
-}
-
 /* ---- Edges ---- */
 
 #if defined(__GNUC__)
@@ -1568,11 +1534,6 @@ EerufStatus eeruf_edges_pop(EerufEdges *edges, EerufEdge *edge) {
 #define HEALTH_AT 4u
 #define HEALTH 0x70u
 #define SEEN_HIGH 0x80u /* when the module was to be triggered again, so that it was not */
-
-const char *eeruf_health_name(uint8_t health) {
-    static const char *const NAMES[] = {"well", "missing", "stuck high", "chatters", "loses edges", "pin error"};
-    return health < sizeof NAMES / sizeof NAMES[0] ? NAMES[health] : "?";
-}
 
 static void set_bits(EerufLine *line, uint8_t mask, uint8_t bits) {
     line->state = (uint8_t)((line->state & ~mask) | bits);
@@ -1833,7 +1794,6 @@ uint8_t eeruf_hc_sr04_health(const EerufHcSr04 *modules, uint8_t sensor) {
     return health_of(&modules->lines[sensor]);
 }
 
-#if EERUF_WITH_FLOW
 /* ---- Flow: the rules are in docs/explanation/flow.md ---- */
 
 #define QUIET_US 4u /* the unit of quiet */
@@ -2476,4 +2436,3 @@ uint32_t eeruf_flow_believed_us(const EerufFlowRing *flow, uint8_t sensor) {
     of = flow_sensor(&flow->ring, sensor);
     return of->missed <= flow->memory && of->believed_us < SILENCE ? of->believed_us : EERUF_NO_ECHO;
 }
-#endif

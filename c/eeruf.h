@@ -36,11 +36,6 @@
 
 #define EERUF_VERSION 5u /* goes up with each change of a structure or a table */
 
-/* Leave out flow with -DEERUF_WITH_FLOW=0; the linker leaves it out too if you do not call it. */
-#ifndef EERUF_WITH_FLOW
-#define EERUF_WITH_FLOW 1
-#endif
-
 /* Firings that a ring by a table remembers of each sensor, 4 bytes each: 2 to 32, the same for library and program.
    Four suffice where sound is audible for no longer than a period; readings that sound of a forgotten firing might
    explain are ambiguous. With -DEERUF_AGREEMENT_ALONE no ring asks, and crosstalk that repeats is accepted: a baseline. */
@@ -192,7 +187,6 @@ enum {
     EERUF_READING_UNANSWERED = 11, /* no evidence at all: no edge, no sign that it listened; never free space */
     EERUF_READING_KINDS = 12
 };
-const char *eeruf_reading_name(uint8_t kind); /* "accepted"; not linked unless called */
 
 #define EERUF_BY_HISTORY 0xFEu /* a firing that may explain an ambiguous reading is no longer remembered */
 #define EERUF_BY_NOTHING 0xFFu
@@ -406,7 +400,6 @@ EerufStatus eeruf_watch_state(const EerufWatch *watch, uint8_t sensor, uint32_t 
 #define EERUF_SOUND_20C 343200u /* mm/s at 20 C (ISO 9613-1) */
 uint32_t eeruf_sound_mm_s(int16_t celsius_tenths);
 uint32_t eeruf_distance_mm(uint32_t t_echo_us, uint32_t c_mm_s); /* c t / 2, to the nearest; stops at UINT32_MAX */
-uint32_t eeruf_echo_time_us(uint32_t distance_mm, uint32_t c_mm_s);
 
 /* ---- Edges: from an interrupt, which only time-stamps, to the main loop ---- */
 
@@ -444,7 +437,6 @@ enum {
     EERUF_HEALTH_LOSES_EDGES = 4, /* its line fell without having risen, or the other way round */
     EERUF_HEALTH_PIN_ERROR = 5    /* one of its pins reported an error */
 };
-const char *eeruf_health_name(uint8_t health); /* "stuck high"; not linked unless called */
 
 /* The modules' times, in microseconds: EERUF_HC_SR04, or EERUF_MODULES of a table whose ring file names them. */
 typedef struct EerufHcSr04Settings {
@@ -516,7 +508,6 @@ EerufStatus eeruf_hc_sr04_fired(EerufHcSr04 *modules, uint8_t sensor, uint32_t a
 /* The health of a module at its last complete firing; EERUF_HEALTH_MISSING for one that is not there. */
 uint8_t eeruf_hc_sr04_health(const EerufHcSr04 *modules, uint8_t sensor);
 
-#if EERUF_WITH_FLOW
 /* ---- Flow: one sensor after the other, each with as much quiet around its firing as it has needed ----
 
    A sensor fires when those before it have been quiet for as long as they and it need, and a throw of dice later: far
@@ -597,7 +588,6 @@ EerufStatus eeruf_flow_restart(EerufFlowRing *flow, uint32_t now_us);
 uint32_t eeruf_flow_quiet_us(const EerufFlowRing *flow, uint8_t sensor);
 /* The echo time that is believed of a sensor; EERUF_NO_ECHO if none is, or nothing is in range. */
 uint32_t eeruf_flow_believed_us(const EerufFlowRing *flow, uint8_t sensor);
-#endif
 
 #ifdef __cplusplus
 }

@@ -19,11 +19,8 @@ class Fault:
 def read(text):
     """The file: (period, firing times of each phase, faults)."""
     rows = [line.split("|") for line in text.strip().split("\n") if not line.startswith("#")]
-    head = rows[0]
-    if head[0].strip() != "schedule":
-        raise ValueError("%r; expected a schedule" % head[0])
-    times = [[int(us) for us in phase.split()] for phase in head[2:]]
-    return int(head[1]), times, [Fault(row) for row in rows[1:]]
+    times = [[int(us) for us in phase.split()] for phase in rows[0][2:]]
+    return int(rows[0][1]), times, [Fault(row) for row in rows[1:]]
 
 
 def cell(right, count, lies):
@@ -31,24 +28,14 @@ def cell(right, count, lies):
     return "%d of %d, %d" % (right, count, lies)
 
 
-def _cells(line):
-    return [cell.strip() for cell in line.strip("|").split("|")]
-
-
 def with_column(document, column, cells):
     """The document whose table has these cells, by name and surroundings, in this column."""
-    lines, at, seen = document.split("\n"), None, set()
-    for number, line in enumerate(lines):
-        if not line.startswith("|"):
-            continue
-        row = _cells(line)
-        if row[0] == "fault":
-            at = row.index(column)
-        elif at is not None and (row[0], row[1]) in cells:
-            row[at] = cells[row[0], row[1]]
-            lines[number] = "| " + " | ".join(row) + " |"
-            seen.add((row[0], row[1]))
-    missing = [key for key in cells if key not in seen]
-    if missing:
-        raise AssertionError("no row of %r in the table" % missing)
-    return "\n".join(lines)
+    rows, left = [line.split("|") for line in document.split("\n")], dict(cells)
+    at = [[cell.strip() for cell in row].index(column) for row in rows if row[1:2] == [" fault "]][0]
+    for row in rows:
+        key = tuple([cell.strip() for cell in row[1:3]])
+        if key in left:
+            row[at] = " %s " % left.pop(key)
+    if left:
+        raise AssertionError("no row of %r in the table" % list(left))
+    return "\n".join(["|".join(row) for row in rows])

@@ -1,8 +1,6 @@
-"""A HcSr04FlowRing, which samples lines, and faults of one of them: python3 test_line_faults.py [FAULTS [TABLE]].
+"""A HcSr04FlowRing, which samples lines, and faults of one of them: python3 test_line_faults.py.
 
 Free space is never said without evidence, and each state is right after two readings. It runs under MicroPython too."""
-
-import sys
 
 from eeruf import ACCEPTED, CLEAR, KIND, SENSOR, STUCK, T_ECHO, Flow, HcSr04FlowRing
 from line_faults import FAULTY, cell, read, with_column
@@ -21,8 +19,6 @@ class Board:
     """`time` and `machine`: pin x triggers module x, whose line is there or at pin 10 + x, and plays these edges, from `onset_us`
     on. The clock wraps, and goes on by `step_us` with each look at it."""
 
-    IN, OUT = 0, 1
-
     def __init__(self, fault, step_us=STEP_US, onset_us=0):
         board = self
         self.now = self.changed = TURN - 1000000
@@ -38,7 +34,7 @@ class Board:
 
             def init(self, mode, value=None):
                 self.mode = mode
-                if self.number >= 10 and mode == board.OUT:
+                if self.number >= 10 and mode == Pin.OUT:
                     board.driven.add(self.number - 10)
                     board.pulled += 1
                 else:
@@ -47,7 +43,7 @@ class Board:
             def value(self, level=None):
                 if level is None:
                     return int(board.look(self.number % 10))
-                if self.mode != board.OUT:
+                if self.mode != Pin.OUT:
                     raise AssertionError("pin %d is written as an input" % self.number)
                 if self.level and not level:
                     board.triggered(self.number)
@@ -115,8 +111,7 @@ class Forgetful(HcSr04FlowRing):
             super()._trigger(x)
 
 
-class Recovering(HcSr04FlowRing):
-    RECOVERY_US = 200
+Recovering = type("Recovering", (HcSr04FlowRing,), {"RECOVERY_US": 200})
 
 
 def run(fault, kind=HcSr04FlowRing, onset_us=0):
@@ -217,14 +212,12 @@ def main(text, document):
 if __name__ == "__main__":
     import os
 
-    paths = sys.argv[1:] + ["../../tests/data/line-faults.txt", "../../tests/data/line-fault-outcomes.txt"][len(sys.argv) - 1 :]
-    with open(paths[0]) as faults:
-        text = faults.read()
-    with open(paths[1]) as table:
+    outcomes = "../../tests/data/line-fault-outcomes.txt"
+    with open("../../tests/data/line-faults.txt") as faults, open(outcomes) as table:
         document = table.read()
-    written = main(text, document)
+        written = main(faults.read(), document)
     if "EERUF_WRITE" in os.environ:
-        with open(paths[1], "w") as table:
+        with open(outcomes, "w") as table:
             table.write(written)
     elif written != document:
-        raise SystemExit("%s is not what MicroPython says; EERUF_WRITE=1 writes it" % paths[1])
+        raise SystemExit("%s is not what MicroPython says; EERUF_WRITE=1 writes it" % outcomes)

@@ -33,16 +33,9 @@ def settings():
         if found != said:
             raise AssertionError("%r: %r" % (wrong, found))
 
-    class Chip:
-        number = b"\x01\x02"
-
-        @classmethod
-        def unique_id(cls):
-            return cls.number
-
-    sys.modules["machine"] = Chip
     seeds = []
-    for Chip.number in (b"\xe6\x61\x01", b"\xe6\x61\x02"):
+    for number in (b"\xe6\x61\x01", b"\xe6\x61\x02"):
+        sys.modules["machine"] = type("Chip", (), {"unique_id": staticmethod(lambda: number)})
         seeds.append(Flow(8, WINDOW_US).seed)
     del sys.modules["machine"]
     if seeds[0] == seeds[1] or min(seeds) < 1 << 20:

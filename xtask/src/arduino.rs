@@ -63,9 +63,8 @@ const ALL: [u8; 16] = [2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17];
 /// `examples/uno`, which is in Rust: wired as Ring8.
 const IN_RUST: Example = Example::eight("examples/uno", true);
 
-const EXAMPLES: [Example; 7] = [
+const EXAMPLES: [Example; 6] = [
     Example::eight("Ring8", false),
-    Example::one_pin("Ring12OnePin", 12, true),
     Example::one_pin("Flow12", 12, true),
     Example::one_pin("Strip", 6, false),
     Example::new("FromNewPing", &[4, 5, 6], &[4, 5, 6], true),

@@ -14,9 +14,9 @@ const STRICT: [&str; 7] = ["-Wall", "-Wextra", "-Werror", "-pedantic", "-Wconver
 /// Compilers and the languages that each takes the library as.
 const COMPILERS: [(&str, &[&str]); 7] = [
     ("gcc", &["-std=c99"]),
-    ("gcc", &["-std=c17", "-DEERUF_WITH_FLOW=0"]),
+    ("gcc", &["-std=c17"]),
     ("g++", &["-xc++", "-std=c++11"]),
-    ("g++", &["-xc++", "-std=c++20", "-DEERUF_WITH_FLOW=0"]),
+    ("g++", &["-xc++", "-std=c++20"]),
     ("avr-gcc", &["-mmcu=atmega328p", "-std=c99"]),
     ("avr-g++", &["-mmcu=atmega328p", "-xc++", "-std=gnu++11"]),
     ("arm-none-eabi-gcc", &["-mcpu=cortex-m0", "-mthumb", "-std=c99"]),

@@ -167,10 +167,9 @@ fn c_example(board: &Board) -> Result<()> {
     run(Command::new("arm-none-eabi-gcc")
         .args(["-mcpu=cortex-m3", "-mthumb", "-Os", "-ffunction-sections"])
         .args(strict)
-        .arg("c/examples/lm3s6965.c")
         .args(sources)
         .arg(&out)
-        .args(["-nostartfiles", "--specs=rdimon.specs", "-T", "c/examples/lm3s6965.ld", "-Wl,--gc-sections"]))?;
+        .args(["--specs=rdimon.specs", "-T", "c/examples/lm3s6965.ld", "-Wl,--gc-sections"]))?;
     let said = qemu(board, &out, 6)?;
     print!("{said}");
     ensure!(said.contains("c: accepted 792, at 2059 mm"), "the C example said: {said}");

@@ -33,14 +33,7 @@ void loop() {
   if (!sonar.read()) return;
   const EerufState state = sonar.state(sonar.sensor());
   Serial.print(sonar.sensor() + 1);
-  if (state.kind == EERUF_STATE_OBSTACLE) {
-    Serial.print(' ');
-    Serial.println(eeruf_distance_mm(state.t_echo_us, EERUF_SOUND_20C));
-  } else if (state.kind == EERUF_STATE_CLEAR) {
-    Serial.println(F(" clear"));
-  } else if (state.kind == EERUF_STATE_UNANSWERED) {
-    Serial.println(F(" does not answer"));
-  } else {
-    Serial.println(F(" unsure"));
-  }
+  Serial.print(' ');
+  if (state.kind == EERUF_STATE_OBSTACLE) Serial.println(eeruf_distance_mm(state.t_echo_us, EERUF_SOUND_20C));
+  else Serial.println(eeruf_state_name(state.kind));
 }

@@ -267,12 +267,6 @@ pub fn distance_mm(t_echo_us: u32, c_mm_s: u32) -> u32 {
     unsafe { shim::eeruf_distance_mm(t_echo_us, c_mm_s) }
 }
 
-/// `eeruf_echo_time_us`.
-pub fn echo_time_us(distance_mm: u32, c_mm_s: u32) -> u32 {
-    // SAFETY: see above.
-    unsafe { shim::eeruf_echo_time_us(distance_mm, c_mm_s) }
-}
-
 /// A queue of eight edges; there is one, so only one test uses it.
 #[derive(Debug)]
 pub struct Edges;

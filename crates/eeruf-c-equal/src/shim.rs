@@ -41,5 +41,4 @@ unsafe extern "C" {
     pub(crate) fn shim_edges_pop(out: *mut u32) -> i32;
     pub(crate) fn eeruf_sound_mm_s(celsius_tenths: i16) -> u32;
     pub(crate) fn eeruf_distance_mm(t_echo_us: u32, c_mm_s: u32) -> u32;
-    pub(crate) fn eeruf_echo_time_us(distance_mm: u32, c_mm_s: u32) -> u32;
 }

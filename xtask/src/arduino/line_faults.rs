@@ -96,8 +96,8 @@ fn counts(words: &[&str]) -> [usize; 4] {
     for words in words {
         match *words {
             "clear" => counts[Says::Clear as usize] += 1,
-            "does not answer" => counts[Says::NoAnswer as usize] += 1,
-            "unsure" => counts[Says::Unsure as usize] += 1,
+            "does not answer" | "unanswered" => counts[Says::NoAnswer as usize] += 1,
+            "unsure" | "unknown" => counts[Says::Unsure as usize] += 1,
             distance if distance.parse::<u32>().is_ok() => counts[Says::Wall as usize] += 1,
             _ => {}
         }

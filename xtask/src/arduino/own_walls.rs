@@ -13,8 +13,8 @@ use super::build::{self, Board};
 use super::world::{self, Heard};
 use crate::steps::edited;
 
-/// The sketch of all of them, with the pins and the table of its twelve modules exchanged.
-const SKETCH: &str = "examples/Ring12OnePin/Ring12OnePin.ino";
+/// The sketch of all of them, with a table in place of flow, and the pins of its twelve modules exchanged.
+const SKETCH: &str = "examples/Flow12/Flow12.ino";
 const MODULES: [usize; 3] = [4, 8, 12];
 /// The walls: all as far, so that modules that fire together have their echoes together, and scattered ones. Echo times
 /// in microseconds.
@@ -66,8 +66,9 @@ fn exchanged(text: &str, pins: &[u8]) -> Result<String> {
     let list =
         |pins: &[u8]| format!("PINS[] = {{{}}}", pins.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "));
     let count = pins.len();
-    let sonar = |count| format!("EerufSonar<{count}> sonar(EERUF_HC_SR04_{count}, PINS)");
-    edited(text, &[(&list(&ALL[..12]), &list(pins)), (&sonar(12), &sonar(count))])
+    let sonar = format!("EerufSonar<{count}> sonar(EERUF_HC_SR04_{count}, PINS)");
+    let by_table = [("EerufFlow.h", "EerufTables.h"), ("EerufFlow<12> sonar(PINS)", &*sonar)];
+    edited(text, &[&[(&*list(&ALL[..12]), &*list(pins))], &by_table[..]].concat())
 }
 
 /// The shares of accepted firings in percent: of all, and of the worst module, which is counted from 1.

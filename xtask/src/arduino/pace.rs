@@ -10,8 +10,8 @@ use super::{EXAMPLES, Example, world};
 use crate::steps::edited;
 
 /// Sketches that read by a class; the first of them say when their loop is too slow.
-const SKETCHES: [&str; 7] = ["Ring8", "Ring12OnePin", "States4", "FromNewPing", "SerialRing8", "Flow12", "Strip"];
-const SAY_SO: usize = 3;
+const SKETCHES: [&str; 6] = ["Ring8", "States4", "FromNewPing", "SerialRing8", "Flow12", "Strip"];
+const SAY_SO: usize = 2;
 const SECONDS: u32 = 3;
 /// Stands in each before `X ms`.
 const STATED: &str = "One read() takes up to ";

@@ -49,11 +49,7 @@ void begin(Way chosen) {
 // As most sketches fire; pulseIn() does the same.
 void wait(uint8_t sensor) {
   const uint8_t pin = PINS[sensor];
-  pinMode(pin, OUTPUT);
-  digitalWrite(pin, HIGH);
-  delayMicroseconds(10);
-  digitalWrite(pin, LOW);
-  pinMode(pin, INPUT);
+  EerufPin::trigger(pin, pin);
   const uint32_t us = micros();
   while (digitalRead(pin) == LOW && micros() - us < 2000) {}
   const uint32_t rose = micros();

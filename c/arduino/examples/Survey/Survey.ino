@@ -1,7 +1,8 @@
 // A measuring run of up to sixteen HC-SR04 modules with one pin each: which of them hear each other, and after which
 // time. Each fires alone, then each ordered pair with twenty leads of one before the other. Prints a log for
 // `eeruf survey`, as eeruf_core::Survey has it; with four modules that takes half a minute, with eight two.
-#include <Arduino.h>
+#define EERUF_POLLED // no interrupts
+#include <EerufArduino.h>
 
 const uint8_t PINS[] = {2, 3, 4, 5};
 const uint8_t MODULES = sizeof PINS;
@@ -20,27 +21,14 @@ struct Line {
 
 uint16_t slot = 0;
 
-void trigger(uint8_t pin) {
-  digitalWrite(pin, HIGH);
-  pinMode(pin, OUTPUT);
-  delayMicroseconds(10);
-  digitalWrite(pin, LOW);
-  pinMode(pin, INPUT);
-}
-
 // The sound goes out when the line rises, and the line falls with the first sound that comes.
 void look(Line &line, uint32_t begun) {
   const uint8_t pin = PINS[line.module];
-  if (line.state == WAITS && micros() - begun >= line.after) {
-    trigger(pin);
-    line.state = TRIGGERED;
-  } else if (line.state == TRIGGERED && digitalRead(pin)) {
-    line.rose = micros();
-    line.state = LISTENS;
-  } else if (line.state == LISTENS && !digitalRead(pin)) {
-    line.fell = micros();
-    line.state = OVER;
-  }
+  if (line.state == WAITS && micros() - begun >= line.after) EerufPin::trigger(pin, pin);
+  else if (line.state == TRIGGERED && EerufPin::isHigh(pin)) line.rose = micros();
+  else if (line.state == LISTENS && !EerufPin::isHigh(pin)) line.fell = micros();
+  else return;
+  line.state = State(line.state + 1);
 }
 
 // The module from 0, the time at which it fired, the slot, and the echo time, if there was an echo.

@@ -1,7 +1,5 @@
-/* A ring of HC-SR04 modules on Zephyr. Interrupts stamp the edges of the echo lines, the main thread fires by the table
- * in ring.h, and once a second the log says what is before each module. The table is written by
- *
- *   eeruf design c/zephyr/samples/ring/ring.toml --period-only --emit c */
+/* A ring of HC-SR04 modules on Zephyr. Interrupts stamp the edges of the echo lines, the main thread fires by flow, and
+ * once a second the log says what is before each module. */
 #include <zephyr/device.h>
 #include <zephyr/devicetree.h>
 #include <zephyr/drivers/gpio.h>
@@ -10,32 +8,27 @@
 
 #include <eeruf.h>
 
-#include "ring.h"
-
 LOG_MODULE_REGISTER(ring, LOG_LEVEL_INF);
 
 #define RING DT_COMPAT_GET_ANY_STATUS_OKAY(eeruf_hc_sr04_ring)
 
-/* A sleep ends with a tick, up to two later than asked for; that long is waited for instead. */
-#define WAIT_US (2 * 1000000 / CONFIG_SYS_CLOCK_TICKS_PER_SEC + 50)
-#define REPORT_PERIODS (1000000 / EERUF_PERIOD_US)
+#define SENSORS ARRAY_SIZE(triggers)
 
 static const struct gpio_dt_spec triggers[] = {
     DT_FOREACH_PROP_ELEM_SEP(RING, trigger_gpios, GPIO_DT_SPEC_GET_BY_IDX, (,))};
 static const struct gpio_dt_spec echoes[] = {
     DT_FOREACH_PROP_ELEM_SEP(RING, echo_gpios, GPIO_DT_SPEC_GET_BY_IDX, (,))};
-BUILD_ASSERT(ARRAY_SIZE(triggers) == EERUF_SENSORS, "trigger-gpios: expected a pin for each sensor of ring.h");
-BUILD_ASSERT(ARRAY_SIZE(echoes) == EERUF_SENSORS, "echo-gpios: expected a pin for each sensor of ring.h");
+BUILD_ASSERT(ARRAY_SIZE(echoes) == SENSORS, "echo-gpios: expected a pin for each trigger");
 
-static struct gpio_callback callbacks[EERUF_SENSORS];
-static EerufRing ring;
-static EerufSensor sensors[EERUF_SENSORS];
+static struct gpio_callback callbacks[SENSORS];
+static EerufFlowRing ring;
+static EerufFlowSensor sensors[SENSORS];
 static EerufHcSr04 modules;
-static EerufLine lines[EERUF_SENSORS];
+static EerufLine lines[SENSORS];
 static EerufEdges edges;
 static EerufEdge places[64];
 static EerufWatch watch;
-static EerufWatched watched[EERUF_SENSORS];
+static EerufWatched watched[SENSORS];
 static const EerufHcSr04Settings settings = EERUF_HC_SR04;
 
 /* Microseconds that wrap at 32 bits. The counter of cycles wraps sooner, so that its steps are added up: call it at
@@ -67,7 +60,7 @@ static void on_edge(const struct device *port, struct gpio_callback *callback, g
 }
 
 static int open_pins(void) {
-    for (uint8_t sensor = 0; sensor < EERUF_SENSORS; sensor++) {
+    for (uint8_t sensor = 0; sensor < SENSORS; sensor++) {
         const struct gpio_dt_spec *trigger = &triggers[sensor], *echo = &echoes[sensor];
         if (!gpio_is_ready_dt(trigger) || !gpio_is_ready_dt(echo)) return -ENODEV;
         int status = gpio_pin_configure_dt(trigger, GPIO_OUTPUT_INACTIVE);
@@ -81,12 +74,11 @@ static int open_pins(void) {
 }
 
 static EerufStatus begin(void) {
-    const EerufConfig config = EERUF_CONFIG;
+    const EerufFlowConfig config = EERUF_FLOW(SENSORS, 37000); /* their longest echo and a millisecond */
     const uint32_t now = now_us();
-    EerufStatus status =
-        eeruf_ring_init(&ring, sizeof ring, sensors, sizeof sensors, &eeruf_schedule, &config, now);
+    EerufStatus status = eeruf_flow_init(&ring, sizeof ring, sensors, sizeof sensors, &config, now);
     if (status == EERUF_OK)
-        status = eeruf_hc_sr04_init(&modules, sizeof modules, lines, sizeof lines, &ring, &settings);
+        status = eeruf_hc_sr04_init(&modules, sizeof modules, lines, sizeof lines, &ring.ring, &settings);
     if (status == EERUF_OK) status = eeruf_edges_init(&edges, sizeof edges, places, sizeof places);
     if (status == EERUF_OK) status = eeruf_watch_init(&watch, sizeof watch, watched, sizeof watched, now);
     return status;
@@ -106,7 +98,7 @@ static void fire(uint8_t sensor) {
 }
 
 static void report(uint32_t now) {
-    for (uint8_t sensor = 0; sensor < EERUF_SENSORS; sensor++) {
+    for (uint8_t sensor = 0; sensor < SENSORS; sensor++) {
         EerufState state;
         (void)eeruf_watch_state(&watch, sensor, now, &state);
         if (state.kind == EERUF_STATE_OBSTACLE)
@@ -116,17 +108,10 @@ static void report(uint32_t now) {
     }
 }
 
-static void sleep_until_us(uint32_t deadline_us) {
-    int32_t left_us = (int32_t)(deadline_us - now_us());
-    if (left_us > WAIT_US) (void)k_usleep(left_us - WAIT_US);
-    left_us = (int32_t)(deadline_us - now_us());
-    if (left_us > 0) k_busy_wait((uint32_t)left_us);
-}
-
 int main(void) {
     const EerufStatus status = begin();
     if (status != EERUF_OK) {
-        LOG_ERR("ring.h: status %d", status);
+        LOG_ERR("ring: status %d", status);
         return status;
     }
     const int error = open_pins();
@@ -134,16 +119,21 @@ int main(void) {
         LOG_ERR("pins: error %d", error);
         return error;
     }
+    uint32_t reported = now_us();
     for (;;) {
         EerufEvent event;
         /* Before the edges are taken: then no window closes on an edge that came in time. */
         const uint32_t now = now_us();
         (void)eeruf_hc_sr04_edges(&modules, &edges);
-        while (eeruf_ring_poll(&ring, now, &event) == EERUF_EVENT) {
+        while (eeruf_flow_poll(&ring, now, &event) == EERUF_EVENT) {
             if (event.kind == EERUF_EVENT_FIRE) fire(event.sensor);
             (void)eeruf_watch_event(&watch, &event, now);
-            if (event.kind == EERUF_EVENT_PERIOD && event.period % REPORT_PERIODS == 0) report(now);
         }
-        sleep_until_us(eeruf_ring_deadline(&ring));
+        if (now - reported >= 1000000) {
+            report(now);
+            reported = now;
+        }
+        const int32_t left_us = (int32_t)(eeruf_ring_deadline(&ring.ring) - now_us());
+        if (left_us > 0) (void)k_usleep(left_us);
     }
 }

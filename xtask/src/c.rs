@@ -46,6 +46,7 @@ pub(crate) fn c() -> Result<()> {
     }
     package(&target.join("package"))?;
     sample(&target.join("zephyr"))?;
+    esphome(&target.join("esphome"))?;
     equal_under_sanitizers()
 }
 
@@ -99,6 +100,14 @@ fn sample(target: &Path) -> Result<()> {
     run(gcc("gcc", &SANITIZERS).args(compile).arg(&object))?;
     run(gcc("gcc", &SANITIZERS).arg(&object).args(["c/tests/zephyr/board.c", "c/eeruf.c", "-o"]).arg(&program))?;
     run(&mut Command::new(program))
+}
+
+/// The component in `ESPHome`, of which the test replaces the clock and the pins of the host platform.
+fn esphome(target: &Path) -> Result<()> {
+    let python = crate::python::environment(&target.join("python"), &["esphome==2026.6.5"])?;
+    let mut test = Command::new("sh");
+    test.arg("c/tests/esphome/test.sh").arg(target).arg(absolute(python.with_file_name("esphome"))?);
+    run(test.arg(crate::toolchain::program()?))
 }
 
 /// The macros that stand for the devicetree: a specification of each pin, and the list of them.

@@ -85,8 +85,8 @@ pub(crate) fn program(wanted: &Wanted<'_>, language: Language, board: Option<Boa
     let board = chosen(language, board)?;
     let wiring =
         board.map(|board| Ok::<_, String>((board, board.wiring(spec.sensors, wanted.mavlink)?))).transpose()?;
-    if wanted.way == Way::TwoPhases && language != Language::Arduino {
-        return Err("--way two-phases: expected --program arduino; --emit writes its table for rust and c".to_owned());
+    if wanted.way == Way::TwoPhases && matches!(language, Language::Micropython | Language::Ros2) {
+        return Err("--way two-phases: expected --program arduino, c or rust, which fire by tables".to_owned());
     }
     if wanted.mavlink && !matches!(language, Language::Arduino | Language::C) {
         return Err("--mavlink: expected --program arduino or c; the ROS 2 node has a parameter `mavlink`".to_owned());
@@ -104,8 +104,8 @@ pub(crate) fn program(wanted: &Wanted<'_>, language: Language, board: Option<Boa
         (Language::Arduino, flow, Some((board, wiring))) => Ok(arduino(wanted, flow.as_ref(), &about, board, &wiring)),
         (Language::Micropython, Some(flow), Some((_, wiring))) => micropython(&flow, spec, times, &about, &wiring),
         (Language::Ros2, Some(_), Some((_, wiring))) => ros2(wanted, &about, &wiring),
-        (Language::C, Some(flow), _) => Ok(c(wanted, &flow, &about)),
-        (Language::Rust, Some(flow), _) => Ok(rust(wanted, &flow, times, &about)),
+        (Language::C, flow, _) => Ok(c(wanted, flow.as_ref(), &about)),
+        (Language::Rust, flow, _) => Ok(rust(wanted, flow.as_ref(), times, &about)),
         // Each language above has its boards, and a way its settings.
         _ => Err("no program for this way and board".to_owned()),
     }
@@ -284,34 +284,34 @@ fn arduino(wanted: &Wanted<'_>, flow: Option<&FlowDesign>, about: &[String], boa
     Program { files, next: "open the sketch in the Arduino IDE and upload it; its first lines say how to wire" }
 }
 
-/// The numbers of the modules and of the judge, by their names in templates.
-fn numbers(flow: &FlowDesign, spec: &RingSpec, times: PulseTimes) -> Vec<(&'static str, String)> {
-    let FlowDesign { turns, belief, window, blanking, .. } = flow;
+/// Numbers by their names in templates.
+type Numbers = Vec<(&'static str, u32)>;
+
+/// The numbers of the modules, which rest for this time.
+fn of_modules(spec: &RingSpec, times: PulseTimes, rest: Micros) -> Numbers {
     let PulseTimes { deaf_us, shortest_us, latest_rise_us, longest_us, longest_hold_us } = times;
     let trigger_us = spec.modules.first().map_or(10, |module| module.trigger_us);
+    let edges = [("deaf_us", deaf_us), ("shortest_us", shortest_us), ("latest_rise_us", latest_rise_us)];
+    let pulses = [("longest_us", longest_us), ("longest_hold_us", longest_hold_us), ("trigger_us", trigger_us)];
+    let ring = [("sensors", spec.sensors as u32), ("rest_us", rest.as_micros())];
+    ring.into_iter().chain(edges).chain(pulses).collect()
+}
+
+/// The numbers of a flow ring.
+fn of_flow(flow: &FlowDesign) -> Numbers {
+    let FlowDesign { turns, belief, window, blanking, .. } = flow;
     let us = Micros::as_micros;
-    [
-        ("sensors", spec.sensors as u32),
-        ("window_us", window.as_micros()),
+    vec![
+        ("window_us", us(*window)),
         ("blanking_us", us(*blanking)),
         ("least_us", us(turns.least)),
         ("most_us", us(turns.most)),
-        ("rest_us", us(turns.rest)),
         ("dice_us", us(turns.dice)),
         ("t_delta_us", us(belief.t_delta)),
         ("near_us", us(belief.near)),
         ("path_change_us", us(belief.path_change)),
         ("top_speed_mm_s", belief.top_speed_mm_s.into()),
-        ("deaf_us", deaf_us),
-        ("shortest_us", shortest_us),
-        ("latest_rise_us", latest_rise_us),
-        ("longest_us", longest_us),
-        ("longest_hold_us", longest_hold_us),
-        ("trigger_us", trigger_us),
     ]
-    .into_iter()
-    .map(|(name, number)| (name, number.to_string()))
-    .collect()
 }
 
 fn micropython(
@@ -328,7 +328,8 @@ fn micropython(
                 .to_owned(),
         );
     }
-    let mut values = numbers(flow, spec, times);
+    let numbers = of_modules(spec, times, flow.turns.rest).into_iter().chain(of_flow(flow));
+    let mut values: Vec<_> = numbers.map(|(name, number)| (name, number.to_string())).collect();
     let votes = match flow.belief.votes {
         Votes::ByMotion => "BY_MOTION",
         Votes::EveryEcho => "EVERY_ECHO",
@@ -350,15 +351,22 @@ fn micropython(
     Ok(Program { files, next: "copy both files to the board, as `mpremote cp main.py eeruf.py :`, and reset it" })
 }
 
-fn c(wanted: &Wanted<'_>, flow: &FlowDesign, about: &[String]) -> Program {
+fn c(wanted: &Wanted<'_>, flow: Option<&FlowDesign>, about: &[String]) -> Program {
     let about = format!("/* {} */\n", about.join("\n   "));
-    let of_ring = |template| lines_of(template, true, wanted.mavlink);
+    let of_ring = |template| lines_of(template, flow.is_some(), wanted.mavlink);
+    let ring = wanted.source(Form::C, flow);
     let directions = directions(wanted);
-    let directions: Vec<_> = directions.iter().map(|(name, value)| (*name, &**value)).collect();
+    let mut values: Vec<_> = directions.iter().map(|(name, value)| (*name, &**value)).collect();
+    values.extend(match flow {
+        Some(_) => {
+            [("Flow", "Flow"), ("flow", "flow"), ("seed", "uint32_t seed"), ("table", ""), ("base", "&ring.ring")]
+        }
+        None => [("Flow", ""), ("flow", "ring"), ("seed", "void"), ("table", "&eeruf_schedule, "), ("base", "&ring")],
+    });
     let files = [
         ("sonar.h", about + &of_ring(include_str!("templates/sonar.h"))),
-        ("sonar.c", filled(&of_ring(include_str!("templates/sonar.c")), &directions)),
-        ("ring.h", wanted.source(Form::C, Some(flow))),
+        ("sonar.c", filled(&of_ring(include_str!("templates/sonar.c")), &values)),
+        ("ring.h", ring),
     ];
     let library = C_LIBRARY.into_iter().chain([MAVLINK, ARDUPILOT].into_iter().filter(|_| wanted.mavlink));
     let files = files.into_iter().chain(library.map(|(name, text)| (name, text.to_owned())));
@@ -368,27 +376,33 @@ fn c(wanted: &Wanted<'_>, flow: &FlowDesign, about: &[String]) -> Program {
     }
 }
 
-fn rust(wanted: &Wanted<'_>, flow: &FlowDesign, times: PulseTimes, about: &[String]) -> Program {
-    let own = flow.limits.most().is_some();
-    let mut values = numbers(flow, &wanted.design.spec, times);
-    let (ring, begin) = if own {
-        (
+fn rust(wanted: &Wanted<'_>, flow: Option<&FlowDesign>, times: PulseTimes, about: &[String]) -> Program {
+    let (design, spec) = (wanted.design, &wanted.design.spec);
+    let source = wanted.source(Form::Rust, flow);
+    let own = flow.map_or(source.contains("EachSensor"), |flow| flow.limits.most().is_some());
+    // A module may rest for less than it says, where the table of its ring file keeps that.
+    let rest = spec.modules.first().map_or(0, |module| module.rest_us).min(design.schedule.min_refire().as_micros());
+    let rest = flow.map_or(Micros::new(rest), |flow| flow.turns.rest);
+    let numbers = of_modules(spec, times, rest).into_iter().map(|(name, number)| (name, number.to_string()));
+    let (ring, begin) = match (flow, own) {
+        (Some(_), true) => (
             "eeruf_core::flow::FlowRing<SENSORS, 1, eeruf_core::EachSensor<SENSORS>>",
             "with_limits(SENSORS, ring::LIMITS, ",
-        )
-    } else {
-        ("eeruf_core::flow::FlowRing<SENSORS>", "flow(SENSORS, ")
+        ),
+        (Some(_), false) => ("eeruf_core::flow::FlowRing<SENSORS>", "flow(SENSORS, "),
+        (None, true) => {
+            ("eeruf_core::ScheduledRing<'static, SENSORS, 1, &'static eeruf_core::EachSensor<SENSORS>>", "")
+        }
+        (None, false) => ("eeruf_core::ScheduledRing<'static, SENSORS>", ""),
     };
-    values.extend([("ring", ring.to_owned()), ("begin", begin.to_owned())]);
+    let texts = [("ring", ring), ("begin", begin)].map(|(name, text)| (name, text.to_owned()));
+    let values: Vec<_> = numbers.chain(texts).collect();
     let values: Vec<_> = values.iter().map(|(name, value)| (*name, &**value)).collect();
+    let lib = filled(&lines_of(include_str!("templates/lib.rs"), flow.is_some(), false), &values);
     let files = [
         ("Cargo.toml", filled(include_str!("templates/Cargo.toml.in"), &[("name", wanted.name)])),
-        ("src/lib.rs", comments(about, "//!") + &filled(include_str!("templates/lib.rs"), &values)),
-        (
-            "src/ring.rs",
-            "//! The settings of the ring, as `eeruf design` found them.\n\n".to_owned()
-                + &wanted.source(Form::Rust, Some(flow)),
-        ),
+        ("src/lib.rs", comments(about, "//!") + &lib),
+        ("src/ring.rs", "//! The settings of the ring, as `eeruf design` found them.\n\n".to_owned() + &source),
     ];
     Program {
         files: files.into_iter().map(|(name, text)| (name.to_owned(), text)).collect(),

@@ -8,27 +8,34 @@ use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{InputPin, OutputPin};
 
 pub use eeruf_core;
-pub use ring::SENSORS;
+pub use ring::SENSORS;  //@flow
+
+pub const SENSORS: usize = @sensors@;  //@table
 
 /// Edges of the echo lines: the interrupt of any change pushes sensor, level and instant.
 pub static EDGES: EdgeQueue<32> = EdgeQueue::new();
 
 /// The ring on its pins. `poll(now)` fires what is due and returns readings; `next_deadline()` says until when to
-/// sleep; `moving(speed_mm_s, turn_mrad_s, now)`, once a control cycle, how the robot moves, else the ring file's speed
-/// counts.
-pub type Sonar<T, I, D> = HcSr04Ring<@ring@, T, I, D, SENSORS, &'static EdgeQueue<32>>;
+/// sleep; `moving(speed_mm_s, turn_mrad_s, now)`, once a control cycle, how the robot moves, else the ring file's speed  //@flow
+/// counts.  //@flow
+/// sleep.  //@table
+pub type Sonar<T, I, D> =
+    HcSr04Ring<@ring@, T, I, D, SENSORS, &'static EdgeQueue<32>>;
 
-/// Begins. The seed is the chip's number, or another that each robot has of its own, not 0.
+/// Begins. The seed is the chip's number, or another that each robot has of its own, not 0.  //@flow
+/// Begins.  //@table
 ///
 /// # Errors
-/// [`SetupError`]: none for these settings, but for a seed of 0.
+/// [`SetupError`]: none for these settings, but for a seed of 0.  //@flow
+/// [`SetupError`]: none for this table.  //@table
 pub fn sonar<T: OutputPin, I: InputPin, D: DelayNs>(
     pins: [Pins<T, I>; SENSORS],
     delay: D,
-    seed: u32,
+    seed: u32,  //@flow
     now: Instant,
 ) -> Result<Sonar<T, I, D>, SetupError> {
-    let ring = eeruf_core::flow::FlowRing::@begin@ring::turns(seed), ring::BELIEF, ring::CONFIG, now)?;
+    let ring = eeruf_core::flow::FlowRing::@begin@ring::turns(seed), ring::BELIEF, ring::CONFIG, now)?;  //@flow
+    let ring = eeruf_core::Ring::new(&ring::RING, ring::CONFIG, now)?;  //@table
     let mut settings = Settings::default();
     settings.trigger = Micros::new(@trigger_us@);
     settings.deaf = Micros::new(@deaf_us@);

@@ -16,12 +16,14 @@ void board_trigger(uint8_t sensor, uint16_t us);
 
 /* Called by you: */
 
-/* Begins. The seed is the chip's number, or another that each robot has of its own, not 0. EERUF_OK, or what is wrong. */
-EerufStatus sonar_begin(uint32_t seed);
+/* Begins. The seed is the chip's number, or another that each robot has of its own, not 0. EERUF_OK, or what is wrong. */  //@flow
+EerufStatus sonar_begin(uint32_t seed);  //@flow
+/* Begins. EERUF_OK, or what is wrong. */  //@table
+EerufStatus sonar_begin(void);  //@table
 /* From the interrupt of any change of an echo line. */
 void sonar_edge(uint8_t sensor, bool high);
-/* Says how fast the robot moves, in mm/s, and turns, in mrad/s: once a control cycle. Else the ring file's speed counts. */
-void sonar_moving(uint32_t speed_mm_s, uint32_t turn_mrad_s);
+/* Says how fast the robot moves, in mm/s, and turns, in mrad/s: once a control cycle. Else the ring file's speed counts. */  //@flow
+void sonar_moving(uint32_t speed_mm_s, uint32_t turn_mrad_s);  //@flow
 /* As often as you can: fires what is due. True with a reading: EERUF_READING_ACCEPTED is a distance
    (eeruf_distance_mm), EERUF_READING_CLEAR free space, all else no news. */
 bool sonar_read(uint8_t *sensor, EerufReading *reading);

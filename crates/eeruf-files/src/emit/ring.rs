@@ -59,12 +59,12 @@ impl Form {
         let deaf_us = modules.iter().map(|module| module.blanking_us).min().unwrap_or(0);
         // Writing to a string does not fail.
         _ = match self {
-            Self::Rust if deaf_us > 0 => writeln!(
+            Self::Rust if !modules.is_empty() => writeln!(
                 text,
                 "\n// For `Ring::new(&RING, CONFIG, now)`: modules are deaf after firing.\npub const CONFIG: \
                  eeruf_core::RingConfig = eeruf_core::RingConfig::new().with_blanking(Micros::new({deaf_us}));"
             ),
-            Self::C if deaf_us > 0 => writeln!(
+            Self::C if !modules.is_empty() => writeln!(
                 text,
                 "\n/* For an EerufConfig: modules are deaf after firing. */\n#define EERUF_RING_CONFIG \
                  {{EERUF_VERSION, 2, 0, 0, {deaf_us}, 0, 0}}"

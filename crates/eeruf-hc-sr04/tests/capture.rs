@@ -7,7 +7,11 @@ mod pio;
 use fastrand::Rng;
 use std::collections::VecDeque;
 
-use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, ScheduledRing, Tally, tables::PAPER_12};
+use eeruf_core::flow::{BeliefSettings, FlowRing, TurnSettings};
+use eeruf_core::{
+    Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, ScheduledRing, Tally, judge::Judge, plan::Plan,
+    tables::PAPER_12,
+};
 use eeruf_hc_sr04::capture::{CaptureRing, Captured, Captures, LineEdge, PioLine, RmtLine, TimerLine};
 use eeruf_hc_sr04::{Health, Settings, SetupError};
 
@@ -346,14 +350,22 @@ impl Captures for Timer {
 
 type Driver<C> = CaptureRing<ScheduledRing<'static, K>, C, K>;
 
+const CONFIG: RingConfig = RingConfig::new().with_window(Micros::new(40_000));
+
 fn driver<C: Captures>(hardware: C) -> Driver<C> {
-    let ring = Ring::new(&PAPER_12, RingConfig::new().with_window(us(40_000)), BEGIN).unwrap();
-    CaptureRing::new(ring, Settings::default(), hardware).unwrap()
+    CaptureRing::new(Ring::new(&PAPER_12, CONFIG, BEGIN).unwrap(), Settings::default(), hardware).unwrap()
 }
 
-/// Runs several periods in a loop that comes round every 0 to 5 ms.
 fn run<C: Captures>(hardware: C, periods: u32) -> ([Tally<u32>; K], [Health; K], C, u32) {
-    let (mut driver, mut random, mut now) = (driver(hardware), Rng::with_seed(20_000), BEGIN);
+    run_driver(driver(hardware), periods)
+}
+
+/// Runs a loop that comes round every 0 to 5 ms, for some periods.
+fn run_driver<P: Plan, J: Judge, C: Captures, const H: usize>(
+    mut driver: CaptureRing<Ring<P, J, K, 1, H>, C, K>,
+    periods: u32,
+) -> ([Tally<u32>; K], [Health; K], C, u32) {
+    let (mut random, mut now) = (Rng::with_seed(20_000), BEGIN);
     let (mut tallies, mut ended, mut late) = ([Tally::default(); K], 0, 0);
     while ended < periods {
         now += us(random.u32(..=5_000));
@@ -380,7 +392,28 @@ fn wall(sensor: u8) -> u32 {
     3_000 + 2_000 * u32::from(sensor)
 }
 
-/// The edges of a single module whose state machine is triggered once and listens for 45 ms.
+/// Every firing's instant is the hardware's, so that late loops cost time and no reading.
+#[test]
+fn flow_on_hardware_accepts_own_walls_in_late_loops() {
+    fn accepted<C: Captures>(hardware: C) -> C {
+        let ring = FlowRing::flow(K, TurnSettings::new(7), BeliefSettings::DEFAULT, CONFIG, BEGIN).unwrap();
+        let driver = CaptureRing::new(ring, Settings::default(), hardware).unwrap();
+        let (tallies, health, hardware, _) = run_driver(driver, 100);
+        for (tally, health) in tallies.iter().zip(health) {
+            let (all, accepted) = (fired(tally), tally.of(ReadingKind::Accepted));
+            assert!(
+                all >= 99 && 100 * accepted >= 95 * all && health == Health::Well,
+                "{accepted} of {all}, {health:?}"
+            );
+        }
+        hardware
+    }
+    let walls = |sensor| (Answer::Pulse(wall(sensor)), Trouble::None);
+    assert_eq!(accepted(Pio::new(Modules::new(walls))).off, 0, "the trigger is exact");
+    accepted(Timer::new(Modules::new(walls)));
+}
+
+/// A line of a single module: a state machine that is triggered once, and listens for 45 ms.
 fn pio_edges(answer: fn(u8) -> (Answer, Trouble)) -> (Vec<(bool, u32)>, Pio) {
     let mut pio = Pio::new(Modules::new(answer));
     let fired = pio.fire(0, BEGIN + us(1_000), BEGIN).unwrap();

@@ -13,8 +13,9 @@ const AHEAD: Micros = Micros::from_millis(10);
 
 /// A ring of modules on hardware that triggers them and captures their edges, such as PIO, RMT or a timer.
 ///
-/// The loop may be late by some milliseconds: firings are as exact as the hardware, and its reports are judged as if
-/// the loop had been on time.
+/// The loop may come late by some milliseconds: firings of a table are as exact as the hardware, and what it reports is
+/// judged as if the loop had been there. A plan that decides on the next firing by what was heard until then, as flow
+/// does, fires when the loop comes; the hardware says when that was.
 #[derive(Debug)]
 pub struct CaptureRing<R, C, const K: usize> {
     ring: HcSr04Ring<R, (), (), (), K>,
@@ -45,8 +46,11 @@ impl<P: Plan, J: Judge, C: Captures, const K: usize, const H: usize> CaptureRing
     /// Like [`Ring::poll`]: call until there is no event. [`RingEvent::Fire`] is for information, and may come some
     /// milliseconds after the firing.
     pub fn poll(&mut self, now: Instant) -> Option<RingEvent> {
-        self.arm(now);
-        let until = self.until(now);
+        let decides_late = self.decides_late();
+        if !decides_late {
+            self.arm(now);
+        }
+        let until = if decides_late && !self.is_held { now } else { self.until(now) };
         for (sensor, waiting) in (0..).zip(&mut self.waiting) {
             loop {
                 *waiting = waiting.take().or_else(|| self.hardware.edge(sensor, now));
@@ -57,7 +61,11 @@ impl<P: Plan, J: Judge, C: Captures, const K: usize, const H: usize> CaptureRing
             }
         }
         let event = self.ring.poll_triggered(until)?;
-        if let RingEvent::Fire { .. } = event {
+        let RingEvent::Fire { sensor, .. } = event else { return Some(event) };
+        if decides_late {
+            // Where the hardware is busy nothing is heard, which the reading says.
+            _ = self.hardware.fire(sensor, now, now).map(|at| self.ring.fired(sensor, at));
+        } else {
             self.armed.rotate_left(1.min(K));
             self.count = self.count.saturating_sub(1);
             self.is_late &= self.count > 0;
@@ -65,7 +73,12 @@ impl<P: Plan, J: Judge, C: Captures, const K: usize, const H: usize> CaptureRing
         Some(event)
     }
 
-    /// Gives the hardware the firings that it should have by now.
+    /// Returns true if only the next firing is known, and the hardware has none.
+    fn decides_late(&self) -> bool {
+        self.count == 0 && self.ring.upcoming().nth(1).is_none()
+    }
+
+    /// Hands the firings to the hardware that it should have by now.
     fn arm(&mut self, now: Instant) {
         while !self.is_held && !self.is_late {
             let Some(next) = self.ring.upcoming().nth(self.count) else { return };
@@ -97,7 +110,8 @@ impl<P: Plan, J: Judge, C: Captures, const K: usize, const H: usize> CaptureRing
     /// the past if an event is pending, or the hardware is busy with a sensor that must fire.
     pub fn next_deadline(&self) -> Instant {
         let deadline = self.ring.next_deadline();
-        let next = self.ring.upcoming().nth(self.count).filter(|_| !self.is_held && !self.is_late);
+        let next =
+            self.ring.upcoming().nth(self.count).filter(|_| !self.is_held && !self.is_late && !self.decides_late());
         let arms = next.map(|next| Instant::from_micros(next.due.as_micros().wrapping_sub(AHEAD.as_micros())));
         arms.filter(|arms| deadline.has_reached(*arms)).unwrap_or(deadline)
     }

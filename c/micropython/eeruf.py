@@ -624,6 +624,8 @@ class HcSr04FlowRing:
         # When a line rose, by how much sooner it may have; when it was last seen as it is.
         self._rose, self._early, self._seen = [None] * len(pins), [0] * len(pins), [0] * len(pins)
         self._awaits = [False] * len(pins)
+        # Since when modules have a reading that is not late, and two in a row, a bit each.
+        self._since, self._heard, self._twice = time.ticks_us(), 0, 0
 
     def _since_firing(self, x, now):
         return self._time.ticks_diff(now, self.ring._sensors[x].firings[0])
@@ -697,4 +699,17 @@ class HcSr04FlowRing:
         event = self.ring.poll(now)
         if event and event[0] == FIRE:
             self._trigger(event[1])
-        return event if event and event[0] == READING else None
+        if not event or event[0] != READING:
+            return None
+        heard, bit, late = self._heard, 1 << event[SENSOR], event[KIND] == LATE
+        self._twice |= 0 if late else heard & bit
+        self._heard = heard & ~bit if late else heard | bit
+        return event
+
+    def too_slow(self):
+        """True about once a second if `read` comes too seldom: a module had no two readings in a row that are not late."""
+        now, twice = self._time.ticks_us(), self._twice
+        if self._time.ticks_diff(now, self._since) < 950000:
+            return False
+        self._since, self._heard, self._twice = now, 0, 0
+        return not self.ring._paused and any(s.enabled and not twice >> x & 1 for x, s in enumerate(self.ring._sensors))

@@ -20,11 +20,14 @@ class Modules(HcSr04FlowRing):
 
 
 print("seed", flow.seed)
+print("polled: a loop that comes later than", LOOK_US, "us has fewer distances")
 ring = Modules(flow, pins=@triggers@, echoes=@echoes@)
 while True:
     # A robot that knows how it moves says so once a control cycle, in mm/s and mrad/s; else the ring file's speed counts:
     # ring.moving(speed, turn)
     reading = ring.read()
+    if ring.too_slow():
+        print("the loop is too slow: modules are not heard")
     if reading and reading[KIND] == ACCEPTED:
         print(reading[SENSOR] + 1, reading[T_ECHO] * 1716 // 10000)
     elif reading and reading[KIND] == CLEAR:

@@ -1,6 +1,5 @@
-//! `eeruf diagnose`: what is wrong with a ring, from its own log.
+//! `eeruf diagnose`: faults of a ring, from its own log.
 
-use std::cell::RefCell;
 use std::path::{Path, PathBuf};
 
 use eeruf_core::{Micros, Phase};
@@ -57,7 +56,7 @@ pub(crate) struct Args {
 }
 
 impl Args {
-    /// The questions of `eeruf logs`.
+    /// Makes the arguments that `eeruf logs` passes on.
     pub(super) fn of(file: &Path, schedule: Option<PathBuf>, json: bool) -> Self {
         Self {
             file: file.to_owned(),
@@ -81,10 +80,9 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         ..measured
     };
     let timing = timing_of(args, &log)?;
-    let watch = RefCell::new(Watch::new());
-    let keep_going = || watch.borrow_mut().go_on(|| format!("{} firings", log.firings.len()));
+    let keep_going = Watch::new().asked(|| format!("{} firings", log.firings.len()));
     let diagnosis = diagnose_while(&log, &settings, &keep_going);
-    drop(watch);
+    drop(keep_going);
     let found = DiagnosisReport {
         file: &args.file,
         log: &log,

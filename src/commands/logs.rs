@@ -1,6 +1,5 @@
-//! `eeruf logs`: whether sensors read each other's sound, from whatever log there is.
+//! `eeruf logs`: finds out from any log if sensors read each other's sound.
 
-use std::cell::RefCell;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 
@@ -125,14 +124,13 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     Ok(answer)
 }
 
-/// Adds who fools whom, where a log of firings has lags that move.
+/// Adds pairs of sensors with crosstalk, from a log of firings with changing lags.
 fn by_firings(log: &FiringLog, names: &[String], found: &mut Examination) {
     /// A sensor is fooled if this share of its readings is another's sound, surely.
     const FOOLED: f64 = 0.05;
-    let watch = RefCell::new(Watch::new());
-    let keep_going = || watch.borrow_mut().go_on(|| format!("{} firings", log.firings.len()));
+    let keep_going = Watch::new().asked(|| format!("{} firings", log.firings.len()));
     let diagnosis = diagnose_while(log, &Settings::of(log), &keep_going);
-    drop(watch);
+    drop(keep_going);
     // Names in such a log are the numbers of its sensors.
     let place = |sensor: u8| names.iter().position(|name| *name == sensor.to_string());
     for of in diagnosis.hearing.iter().filter(|of| of.foreign.value() >= FOOLED) {
@@ -180,7 +178,7 @@ fn json(report: &Report, sensors: &[Sensor], found: &Examination) -> Value {
     })
 }
 
-/// The log as it was read.
+/// Describes how the log was read.
 fn describe(file: &Path, report: &Report, sensors: &[Sensor]) -> String {
     let (count, file) = (sensors.len(), file.display());
     let mut text = format!("{file}: {}, {count} sensor{}\n", report.form, if count == 1 { "" } else { "s" });

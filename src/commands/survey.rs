@@ -1,11 +1,11 @@
-//! `eeruf survey`: who hears whom, from a measuring run.
+//! `eeruf survey`: finds from a measuring run which sensors hear each other.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use eeruf_core::{Micros, survey::SurveyPlan};
 use eeruf_files::Kind;
-use eeruf_logs::{FiringLog, PathSettings, Surveyed, survey};
+use eeruf_logs::{FiringLog, KeepGoing, PathSettings, Surveyed, survey_while};
 use eeruf_sim::{Physics, World};
 
 use super::arguments::picture;
@@ -19,6 +19,7 @@ use crate::files::survey::{TruePath, simulate, true_paths};
 use crate::files::toml::read_world;
 use crate::files::write::write;
 use crate::report::survey::{FROM, RingTerms, Scenes, SurveyReport, describe, json, ring_file, who_hears_whom};
+use crate::report::watch::{Watch, was_stopped};
 
 /// Find from a measuring run which sensors hear each other, and write a ring file for `design`.
 ///
@@ -79,7 +80,7 @@ pub(crate) struct Args {
 }
 
 impl Args {
-    /// The questions of `eeruf logs`.
+    /// Makes the arguments that `eeruf logs` passes on.
     pub(super) fn of(file: &Path, ring: Option<PathBuf>, json: bool) -> Self {
         Self {
             file: Some(file.to_owned()),
@@ -105,7 +106,9 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     if args.simulate.len() > 1 {
         return several(args);
     }
-    let simulated = args.simulate.first().map(|scene| simulated(args, scene)).transpose()?;
+    let at_work = Watch::unstoppable().asked(|| "a simulated survey".to_owned());
+    let simulated = args.simulate.first().map(|scene| simulated(args, scene, &at_work)).transpose()?;
+    drop(at_work);
     let (log, truth) = match simulated {
         Some((log, truth, physics)) => (log, Some((truth, physics))),
         None => {
@@ -113,9 +116,10 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
             (read_firings(file)?, None)
         }
     };
-    let surveyed = survey(&log, &settings(args));
+    let surveyed = watched(&log, &settings(args), Watch::new());
     let found = found(args, file, &log, &surveyed, truth.as_ref());
-    if let Some(ring) = &args.ring {
+    // What a survey found until Ctrl-C is no ring.
+    if let Some(ring) = args.ring.as_ref().filter(|_| !was_stopped()) {
         let terms = RingTerms {
             t_delta_us: args.t_delta_us,
             window_us: args.window_us.unwrap_or(surveyed.window_us.next_multiple_of(1000)),
@@ -139,6 +143,11 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     }
 }
 
+/// Surveys a log, and shows meanwhile that it is at work.
+fn watched(log: &FiringLog, settings: &PathSettings, watch: Watch) -> Surveyed {
+    survey_while(log, settings, &watch.asked(|| format!("{} firings", log.firings.len())))
+}
+
 fn settings(args: &Args) -> PathSettings {
     PathSettings { tolerance_us: args.tolerance_us, ..PathSettings::default() }
 }
@@ -154,24 +163,27 @@ fn found<'a>(
     SurveyReport { file, log, surveyed, until_us: args.until_us, speed_of_sound: args.speed_of_sound, truth }
 }
 
-/// A line for each scene, and their sum.
+/// Prints a line for each scene, and their sum.
 fn several(args: &Args) -> Result<Answer, InputError> {
     let alone = [("--out", args.out.is_some()), ("--ring", args.ring.is_some()), ("--svg", args.svg.is_some())];
     if let Some((name, _)) = alone.into_iter().chain([("--json", args.json)]).find(|(_, given)| *given) {
         return Err(InputError::new(name, format!("{} scenes; expected one", args.simulate.len())));
     }
-    let mut lines = Scenes::default();
-    for scene in &args.simulate {
-        let (log, truth, physics) = simulated(args, scene)?;
-        let surveyed = survey(&log, &settings(args));
+    let (mut lines, done, count) = (Scenes::default(), std::cell::Cell::new(0), args.simulate.len());
+    let keep_going = Watch::unstoppable().asked(|| format!("{} of {count} scenes", done.get()));
+    for scene in args.simulate.iter().take_while(|_| !was_stopped()) {
+        let (log, truth, physics) = simulated(args, scene, &keep_going)?;
+        let surveyed = survey_while(&log, &settings(args), &keep_going);
+        done.set(done.get() + 1);
         lines.push(&found(args, scene, &log, &surveyed, Some(&(truth, physics))));
     }
+    drop(keep_going);
     tell(lines.describe())?;
     Ok(Answer::Yes)
 }
 
 /// The log of a simulated survey, the paths that there are, and the name of the physics.
-fn simulated(args: &Args, scene: &Path) -> Result<(FiringLog, Vec<TruePath>, String), InputError> {
+fn simulated(args: &Args, scene: &Path, go: KeepGoing<'_>) -> Result<(FiringLog, Vec<TruePath>, String), InputError> {
     let bad = |error: &dyn std::fmt::Display| InputError::new(scene, error);
     let mut world: World = read_world(scene)?;
     if let Some(physics) = args.physics {
@@ -181,11 +193,28 @@ fn simulated(args: &Args, scene: &Path) -> Result<(FiringLog, Vec<TruePath>, Str
     let plan = SurveyPlan::new(robot.sensors.len() as u8)
         .with_leads(args.leads, Micros::new(args.lead_step_us))
         .with_window(robot.window, Micros::from_millis(57));
-    let log = simulate(&world, plan).map_err(|error| bad(&error))?;
+    let log = simulate(&world, plan, go).map_err(|error| bad(&error))?;
     if let Some(out) = &args.out {
         write(out, csv(&log, out)?)?;
     }
     let truth = true_paths(&world).map_err(|error| bad(&error))?;
     let physics = world.physics().name().unwrap_or("the scene's own").to_owned();
     Ok((log, truth, physics))
+}
+
+#[cfg(test)]
+mod tests {
+    use std::time::Duration;
+
+    use super::{FiringLog, PathSettings, Watch, watched};
+
+    #[test]
+    fn survey_of_a_log_asks_its_watch_whether_to_go_on() {
+        let rows = "sensor,fired_us,period,phase,t_echo_us\n".to_owned();
+        let rows = (0..40).fold(rows, |rows, slot| format!("{rows}0,{},{slot},0,3000\n", 100_000 * slot));
+        let log = FiringLog::read_from(rows.as_bytes(), "survey.csv".as_ref()).expect("a log of firings");
+        let settings = PathSettings::default();
+        assert_eq!(watched(&log, &settings, Watch::new()).paths.len(), 1);
+        assert!(watched(&log, &settings, Watch::ending_after(Duration::ZERO)).paths.is_empty());
+    }
 }

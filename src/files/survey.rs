@@ -4,27 +4,27 @@ use eeruf_core::{
     Instant, Micros,
     survey::{Survey, SurveyEvent, SurveyPlan},
 };
-use eeruf_logs::{Firing, FiringLog};
+use eeruf_logs::{Firing, FiringLog, KeepGoing};
 use eeruf_sim::{LockStep, PathsError, World};
 
 use super::firings::CLOCK;
 
-/// A path that is loud enough to be heard, or would be if it faded up by 6 dB.
+/// A path loud enough to be heard, or one that would be if it were 6 dB louder.
 pub(crate) struct TruePath {
     pub(crate) sender: u8,
     pub(crate) receiver: u8,
     pub(crate) travel_us: f64,
-    /// Level above what is just heard; below it is negative.
+    /// Level above the threshold of hearing; negative below it.
     pub(crate) level_db: f64,
 }
 
-/// Surveys the first robot of a world.
-pub(crate) fn simulate(world: &World, plan: SurveyPlan) -> Result<FiringLog, PathsError> {
+/// Surveys the first robot of a world, until `keep_going` returns `false`.
+pub(crate) fn simulate(world: &World, plan: SurveyPlan, keep_going: KeepGoing<'_>) -> Result<FiringLog, PathsError> {
     const BLOCK: u64 = 1 << 30;
     let mut outside = LockStep::new(world)?;
     let mut survey = Survey::new(plan, Instant::from_micros(0));
     let (mut now_us, mut firings, mut fired_us) = (0_u64, Vec::new(), [0_u64; 256]);
-    while let Some(due) = survey.next_deadline() {
+    while let Some(due) = survey.next_deadline().filter(|_| keep_going()) {
         // Deadlines are less than 2^30 us ahead.
         let ahead = due.since(Instant::from_wide(now_us)).as_micros();
         now_us += if u64::from(ahead) < BLOCK { ahead.into() } else { 0 };

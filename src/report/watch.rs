@@ -21,10 +21,10 @@ const SAID_EVERY: Duration = Duration::from_secs(60);
 /// True if Ctrl-C was pressed since [`begin`].
 static STOPPED: AtomicBool = AtomicBool::new(false);
 
-/// A flag that stays down: where a task cannot be ended, Ctrl-C ends the program.
+/// A flag that is never raised, for tasks that cannot be ended.
 static NEVER: AtomicBool = AtomicBool::new(false);
 
-/// Forgets every Ctrl-C: the program begins.
+/// Forgets every Ctrl-C, for a new start of the program.
 pub(crate) fn begin() {
     STOPPED.store(false, Ordering::Relaxed);
     interrupted().store(false, Ordering::Relaxed);
@@ -55,7 +55,7 @@ pub(crate) struct Watch {
     began: Instant,
     limit: Duration,
     bar: Option<ProgressBar>,
-    /// Time when the next line is due without a terminal.
+    /// Time of the next line without a terminal.
     says_at: Duration,
     interrupted: &'static AtomicBool,
 }
@@ -65,12 +65,12 @@ impl Watch {
         Self::ending_after(Duration::MAX)
     }
 
-    /// One that ends the task when the time is over.
+    /// Makes a watch that ends the task after this time.
     pub(crate) fn ending_after(limit: Duration) -> Self {
         Self { began: Instant::now(), limit, bar: None, says_at: SAID_AFTER, interrupted: interrupted() }
     }
 
-    /// Watches a task that only shows how far it has come.
+    /// Makes a watch that never ends the task and only shows progress.
     pub(crate) fn unstoppable() -> Self {
         let (began, limit) = (Instant::now(), Duration::MAX);
         Self { began, limit, bar: None, says_at: SAID_AFTER, interrupted: &NEVER }
@@ -81,7 +81,7 @@ impl Watch {
         self.interrupted.store(false, Ordering::Relaxed);
     }
 
-    /// Shows how far the task has come; `false` if it should stop.
+    /// Shows the progress; `false` if the task should stop.
     pub(crate) fn go_on(&mut self, how_far: impl FnOnce() -> String) -> bool {
         let elapsed = self.began.elapsed();
         if self.interrupted.load(Ordering::Relaxed) || elapsed >= self.limit {
@@ -106,6 +106,12 @@ impl Watch {
             bar.set_message(how_far());
         }
         true
+    }
+
+    /// Returns the question whether to go on, for a task that reports no progress.
+    pub(crate) fn asked(self, how_far: impl Fn() -> String) -> impl Fn() -> bool {
+        let watch = std::cell::RefCell::new(self);
+        move || watch.borrow_mut().go_on(&how_far)
     }
 
     /// Answers like [`go_on`](Self::go_on), in the form that a search asks for.

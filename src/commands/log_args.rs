@@ -102,7 +102,7 @@ pub(crate) fn positive(text: &str) -> Result<f64, String> {
 }
 
 impl LogArgs {
-    /// The options as the reader takes them.
+    /// Returns the options in the reader's form.
     pub(crate) fn options(&self) -> Result<Options, InputError> {
         let field = |parts: &[String]| -> Result<FieldChoice, InputError> {
             let unit = <RangeName as clap::ValueEnum>::from_str(&parts[2], true).map_err(|_| {
@@ -133,7 +133,7 @@ impl LogArgs {
     }
 }
 
-/// Reads a log, and shows how far it has come.
+/// Reads a log and shows the progress.
 pub(crate) fn read_shown(
     file: &Path,
     options: &Options,
@@ -149,7 +149,7 @@ pub(crate) fn read_shown(
     })
 }
 
-/// Warns of what was read and seems wrong.
+/// Warns of readings that seem wrong.
 ///
 /// # Errors
 /// The first of the warnings, if they are denied.
@@ -157,14 +157,14 @@ pub(crate) fn warn_of_log(file: &Path, report: &Report) -> Result<(), InputError
     report.warnings.iter().try_for_each(|warning| warn(InputError::new(file, warning)))
 }
 
-/// Fails with what could not be read, or with what was found where no sensor is.
+/// Fails if a part could not be read, or with the reason why no sensor was found.
 pub(crate) fn tell_damage(file: &Path, report: &Report) -> Result<(), InputError> {
     match &report.damage[..] {
         [] => {}
         [first, rest @ ..] => {
             let is_said = first.message().contains("expected ");
             let first = if is_said { first.clone() } else { first.clone().and("expected a whole and undamaged log") };
-            let more = || format!("and {} more places that cannot be read", rest.len());
+            let more = || format!("places that cannot be read, beyond this one: {}", rest.len());
             return Err(if rest.is_empty() { first } else { first.and(more()) }.into());
         }
     }
@@ -181,7 +181,7 @@ pub(crate) fn tell_damage(file: &Path, report: &Report) -> Result<(), InputError
     Ok(())
 }
 
-/// Records left out of a log, and why.
+/// Lists the parts of a log left out, with reasons.
 pub(crate) fn left_out(report: &Report) -> Vec<String> {
     let said = report.skipped.iter().map(|topic| match topic.messages {
         0 => format!("{}: {}", topic.topic, topic.why),

@@ -1,4 +1,4 @@
-//! Small logs as people have them, and what the program says of each.
+//! Small logs as users have them, and the program's answers.
 
 use crate::common::{Outcome, Scratch, eeruf};
 use serde_json::Value;
@@ -67,7 +67,7 @@ fn cut_lines_are_left_out_and_named() {
         .iter()
         .sum();
     assert_eq!((total, object["damage"].as_array().unwrap().len()), (10, 2));
-    assert!(outcome.err.contains("line 5: `40` has 1 cells; expected 2"), "{}", outcome.err);
+    assert!(outcome.err.contains("line 5: `40`: number of cells 1; expected 2"), "{}", outcome.err);
 }
 
 #[test]

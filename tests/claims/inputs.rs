@@ -1,4 +1,4 @@
-//! Input files that are wrong: one line on standard error that names file, line or field, value and what is expected.
+//! Wrong input files: one line on standard error that names file, line or field, value and the expected value.
 
 use crate::common::{Scratch, eeruf};
 
@@ -41,7 +41,7 @@ fn bad_input_gets_one_line_with_its_place() {
     }
     let cases = [
         ("a,b\n1.0,2.0\n1.0,?\n", ", line 3: column b: `?`; expected a range in metres; the line is left out", 2),
-        ("a,b\n1.0,2.0\n1.0\n", ", line 3: `1.0` has 1 cells; expected 2; the line is left out", 2),
+        ("a,b\n1.0,2.0\n1.0\n", ", line 3: `1.0`: number of cells 1; expected 2; the line is left out", 2),
         ("a,b\nx,y\n", ": a table, columns parted by comma: no sensors; expected ranges; found ", 2),
         ("", ": the file is empty; expected lines with readings", 2),
     ];

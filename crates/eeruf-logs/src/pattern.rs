@@ -55,7 +55,7 @@ pub struct FiringPattern {
 }
 
 impl FiringPattern {
-    /// What agreement of a sensor's consecutive readings within this `t_delta` proves for the pattern.
+    /// Says what agreement of a sensor's consecutive readings within this `t_delta` proves for the pattern.
     pub fn proves(&self, t_delta_us: Option<u32>) -> String {
         let repeats = "the sound of another sensor repeats as exactly as the own echo, so that agreement of \
                        consecutive readings shows nothing about crosstalk";

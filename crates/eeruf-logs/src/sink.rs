@@ -143,7 +143,7 @@ impl<'a> Sink<'a> {
 
     pub(crate) fn finish(mut self, file: &Path) -> Report {
         if self.more_damage > 0 {
-            let message = format!("{} more places that cannot be read", self.more_damage);
+            let message = format!("places that cannot be read, beyond these: {}", self.more_damage);
             self.report.damage.push(FileError::new(file, message));
         }
         self.report.firing = self.stamps.pattern(self.report.sensors.len(), self.one_time_a_row && !self.has_own_times);

@@ -185,7 +185,7 @@ impl Plan {
         self.greetings = greetings.collect();
         let ignored = lines.iter().filter(|line| line.0 + 1 < self.rows_from).count();
         if ignored > 0 {
-            let why = format!("{ignored} lines before the readings, without any");
+            let why = format!("{ignored} of its lines, without any reading");
             self.skipped.push(Skipped { topic: "the beginning".to_owned(), why, messages: 0 });
         }
         let is_echoed = names.is_none() && is_echoed_range(&rows[first..], width);

@@ -156,7 +156,7 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
                     return Err(Unread::Other);
                 }
                 if is_odd {
-                    let message = format!("`{}` has {} cells; expected {width}", short(text), cells.len());
+                    let message = format!("`{}`: number of cells {}; expected {width}", short(text), cells.len());
                     return Err(damaged(message));
                 }
                 self.whole(line, &cells)?;
@@ -435,7 +435,7 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
     pub(super) fn end(self, left_out: u64) {
         let skipped = &mut self.sink.report.skipped;
         if left_out > 0 {
-            let why = format!("{left_out} lines that a board, a monitor or a logger wrote by itself");
+            let why = format!("{left_out} of its lines: a board, a monitor or a logger wrote them by itself");
             skipped.push(Skipped { topic: "the text".to_owned(), why, messages: 0 });
         }
         if self.of_light > 0 {
@@ -453,7 +453,7 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
             skipped.push(Skipped { topic: names, why, messages: 0 });
         }
         if self.sink.report.sensors.is_empty() {
-            let names: Vec<_> = self.plan.columns.iter().map(|column| column.name.as_str()).collect();
+            let names: Vec<_> = self.plan.columns.iter().map(|column| short(&column.name)).collect();
             let why = match &names[..] {
                 [] => "no line that holds a number".to_owned(),
                 names => format!("columns {}, none of them a range", names.join(", ")),

@@ -22,13 +22,13 @@ pub struct FileError {
 }
 
 impl FileError {
-    /// An error in a file. Line breaks in the message become semicolons, other control characters are escaped.
+    /// Makes an error in a file. Line breaks in the message become semicolons; other control characters are escaped.
     pub fn new(file: &Path, message: impl fmt::Display) -> Self {
         let message = in_one_line(&message.to_string().replace('\n', "; "));
         Self { file: file.to_owned(), line: None, byte: None, message, is_full: false }
     }
 
-    /// An error in a text that is in no file; [`in_file`](Self::in_file) names one later.
+    /// Makes an error in a text that is in no file; [`in_file`](Self::in_file) can name the file later.
     pub fn in_text(message: impl fmt::Display) -> Self {
         Self::new(Path::new(""), message)
     }
@@ -76,13 +76,13 @@ impl FileError {
         Self { byte, ..self }
     }
 
-    /// Adds what goes with it.
+    /// Adds a related message.
     #[must_use]
     pub fn and(self, more: impl fmt::Display) -> Self {
         Self { message: format!("{}; {more}", self.message), ..self }
     }
 
-    /// Replaces the file.
+    /// Sets the file.
     #[must_use]
     pub fn in_file(self, file: &Path) -> Self {
         Self { file: file.to_owned(), ..self }
@@ -93,7 +93,7 @@ impl FileError {
         &self.file
     }
 
-    /// The line, counted from 1, where one is to blame.
+    /// The line, counted from 1, if the error is in a line.
     pub fn line(&self) -> Option<u64> {
         self.line
     }
@@ -129,7 +129,7 @@ fn alike(_: &Path) -> Option<String> {
     None
 }
 
-/// The file in the same folder whose name is most like that of one that does not exist.
+/// Returns the file in the same folder whose name is most similar to a missing file's.
 #[cfg(feature = "toml")]
 fn alike(file: &Path) -> Option<String> {
     let folder = file.parent()?;
@@ -140,7 +140,7 @@ fn alike(file: &Path) -> Option<String> {
     Some(folder.join(meant).display().to_string())
 }
 
-/// A text without control characters: what a file holds, such as the name of another file, may span lines.
+/// Returns the text on one line, without control characters: a file's content may span lines.
 fn in_one_line(text: &str) -> String {
     let escaped = |c: char| if c.is_control() { c.escape_default().to_string() } else { c.to_string() };
     text.chars().map(escaped).collect()

@@ -1,8 +1,8 @@
-//! The row of a firing in a log that is text.
+//! One line of a text log: one firing.
 
 use std::fmt::Display;
 
-/// The columns of a firing's row; more may follow.
+/// The columns of a firing's row; a log may have more.
 pub const FIRING_COLUMNS: &str = "sensor,fired_us,period,phase,t_echo_us,reading";
 
 /// The row of a firing of a sensor, counted from 0 as periods and phases are, and what the ring made of it.

@@ -6,12 +6,12 @@ use toml::de::{DeTable, DeValue};
 use crate::FileError;
 use crate::parse::line_at;
 
-/// The plausible values of a key; zero means that nothing is asked for, and is plausible.
+/// The plausible values of a key. Zero is always plausible: it means that nothing is asked for.
 struct Plausible {
     key: &'static str,
     from: f64,
     to: f64,
-    /// The likely cause of a value outside, and what is expected.
+    /// The likely cause of a value outside the range, and the expected values.
     why: &'static str,
 }
 
@@ -23,7 +23,7 @@ const MICROSECONDS: &str = "likely milliseconds: times are microseconds";
 const BOUNCES: &str = "each bounce multiplies the paths; 4 to 6 suffice in most rooms";
 const METRES: &str = "likely centimetres or millimetres: lengths are metres";
 
-/// In any file and among the options of any command: a key has one meaning.
+/// Plausible values of keys in files and of command-line options: a key means the same everywhere.
 const PLAUSIBLE: [Plausible; 39] = [
     plausible("heading_rad", 0.0, 6.3, "likely degrees: with this key headings are radians"),
     plausible("spacing_rad", 0.0, 3.2, "radians from one sensor to the next, not degrees or the whole circle"),
@@ -72,7 +72,7 @@ const LISTS: [&str; 6] = ["t_lag_us", "t_wait_a_us", "t_wait_b_us", "t_fire_a_us
 /// Keys that name a module.
 const MODULES: [&str; 2] = ["module", "like"];
 
-/// Returns the keys whose values may be implausible: the names of options and arguments too.
+/// Returns the keys that may have implausible values, which are also names of options and arguments.
 pub fn doubted_keys() -> impl Iterator<Item = &'static str> {
     PLAUSIBLE.iter().map(|plausible| plausible.key)
 }
@@ -142,7 +142,7 @@ fn in_value(key: &str, at: usize, value: &Spanned<DeValue<'_>>, found: &mut Vec<
     }
 }
 
-/// Sensors that a spacing puts into one place, or one that is likely in radians.
+/// Warns of a spacing that puts sensors into one place, or that is probably in radians.
 fn spacing(table: &DeTable<'_>, at: usize, found: &mut Vec<(usize, String)>) {
     let of = |key: &str| table.get(key).and_then(|value| number(value.get_ref()));
     let (Some(spacing), Some(sensors)) = (of("spacing_deg"), of("sensors")) else { return };

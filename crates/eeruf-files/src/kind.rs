@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::FileError;
 
-/// The size from which on a file is no text of ours; some, such as `/dev/zero`, never end.
+/// The size from which on a file is refused; some, such as `/dev/zero`, never end.
 const TOO_LARGE: u64 = 1 << 26;
 
 /// A kind of file that a command of `eeruf` reads.
@@ -14,20 +14,20 @@ const TOO_LARGE: u64 = 1 << 26;
 pub enum Kind {
     /// A schedule: firing times or waits.
     Schedule,
-    /// A ring of `design`.
+    /// A ring file for `design`.
     Ring,
-    /// A ring of `search`.
+    /// A ring file for `search`.
     Waits,
     /// A scene with robots.
     Scene,
-    /// A map of `scene`.
+    /// A map for `scene`.
     Map,
     /// A log of readings or firings.
     Log,
 }
 
 impl Kind {
-    /// Returns the kind that a file looks like, if it looks like one.
+    /// Returns the kind that a file looks like, if any.
     pub fn of(file: &Path, text: &str) -> Option<Self> {
         match file.extension().map(|ending| ending.to_string_lossy().to_lowercase()).as_deref() {
             Some("csv" | "mcap" | "bag" | "db3") => return Some(Self::Log),
@@ -60,7 +60,7 @@ impl Kind {
         None
     }
 
-    /// Returns the kind that a file looks like; none for one that cannot be read as text.
+    /// Returns the kind that a file looks like; `None` if it cannot be read as text.
     pub fn of_file(file: &Path) -> Option<Self> {
         read_text(file).ok().and_then(|text| Self::of(file, &text))
     }
@@ -87,7 +87,7 @@ impl Kind {
         }
     }
 
-    /// Refuses a file that is certainly of another kind than the one expected.
+    /// Refuses a file that is certainly not of the expected kind.
     ///
     /// # Errors
     /// The kind found, the kind expected, and the command that reads the kind found.
@@ -137,7 +137,7 @@ impl Kind {
     }
 }
 
-/// Reads a text up to the size that files of ours have.
+/// Reads a text that is no larger than [`TOO_LARGE`].
 fn read_text(file: &Path) -> io::Result<String> {
     let mut bytes = vec![];
     let size = fs::File::open(file)?.take(TOO_LARGE).read_to_end(&mut bytes)?;

@@ -1,9 +1,9 @@
-//! Names that are like others.
+//! Suggestions for misspelt names.
 
-/// The least likeness, out of 1, of a name that was meant.
+/// Smallest similarity, out of 1, for a suggestion.
 const ALIKE: f64 = 0.85;
 
-/// The name that an unknown one was meant to be, if one is like it.
+/// Returns the known name that is most similar to an unknown one, if any is similar enough.
 ///
 /// ```
 /// assert_eq!(eeruf_files::meant("sensor", ["layout", "sensors"].into_iter()), Some("sensors"));

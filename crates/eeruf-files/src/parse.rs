@@ -1,4 +1,4 @@
-//! TOML, with line, key, value and expectation in the errors.
+//! Parsing of TOML, with errors that name the line, the key, the value and the expected one.
 
 use std::fmt;
 
@@ -9,7 +9,7 @@ use toml::de::{DeTable, DeValue};
 use crate::error::FileError;
 use crate::meant::meant;
 
-/// Types of Rust, and what a user writes for them.
+/// Rust's names of types, and the words a user knows for them.
 const TYPES: [(&str, &str); 6] = [
     ("a sequence", "a list"),
     ("usize", "a whole number from 0 on"),
@@ -18,7 +18,7 @@ const TYPES: [(&str, &str); 6] = [
     ("u8", "a whole number from 0 to 255"),
     ("f64", "a number"),
 ];
-/// Keys whose values are lists or tables, and what one looks like.
+/// Keys whose values are lists or tables, with a sample of each.
 const SAMPLES: [(&str, &str); 5] = [
     ("pose", "pose = { x_m = 0.0, y_m = 0.0, heading_deg = 45.0 }"),
     ("ring", "ring = { sensors = 8, spacing_deg = 45.0, radius_m = 0.1 }"),
@@ -26,7 +26,7 @@ const SAMPLES: [(&str, &str); 5] = [
     ("poses", "poses = [{ x_m = 0.1, y_m = 0.0, heading_deg = 45.0 }, ..]"),
     ("sensors", "a list; a robot's number of sensors stands in its `ring = { sensors = 8, .. }`"),
 ];
-/// Endings of keys, and the units that they stand for.
+/// Endings of keys, and the units they stand for.
 const UNITS: [(&str, &str); 5] =
     [("_us", "microseconds"), ("_deg", "degrees"), ("_m_s", "metres per second"), ("_m", "metres"), ("_db", "dB")];
 
@@ -55,13 +55,13 @@ pub fn parse<T: DeserializeOwned>(text: &str) -> Result<T, FileError> {
     })
 }
 
-/// The mistake in a text that says nothing.
+/// Returns the error for an empty text.
 fn empty(text: &str) -> Option<String> {
     let is_empty = text.lines().all(|line| line.trim().is_empty() || line.trim().starts_with('#'));
     is_empty.then(|| "empty; expected lines such as `sensors = 8`; `eeruf examples .` writes files".to_owned())
 }
 
-/// The likely mistake in a line that is no TOML.
+/// Returns the likely mistake in a line that is not TOML.
 fn syntax(line: &str, error: &str) -> Option<String> {
     const QUOTES: [char; 8] =
         ['\u{201c}', '\u{201d}', '\u{201e}', '\u{2018}', '\u{2019}', '\u{201a}', '\u{ab}', '\u{bb}'];
@@ -123,7 +123,7 @@ pub fn build<T: DeserializeOwned, B, E: fmt::Display>(
     })
 }
 
-/// The line of a byte, counted from 1.
+/// Returns the line of a byte, counted from 1.
 pub(crate) fn line_at(text: &str, byte: usize) -> u64 {
     1 + text.get(..byte).map_or(0, |before| before.matches('\n').count() as u64)
 }
@@ -145,7 +145,7 @@ pub fn explain_json(error: &str) -> FileError {
     FileError::in_text(message(None, "", what).replace("expected TOML", "expected JSON")).at_line(line)
 }
 
-/// The key whose value stands at a byte of the text.
+/// Returns the key whose value is at a byte of the text.
 fn key_at<'a>(table: &'a DeTable<'_>, at: usize) -> Option<&'a str> {
     table.iter().find_map(|(key, value)| in_value(key.get_ref(), value, at))
 }
@@ -163,7 +163,7 @@ fn in_value<'a>(key: &'a str, value: &'a Spanned<DeValue<'_>>, at: usize) -> Opt
     }
 }
 
-/// The parser's message as `thing: value; expected X`.
+/// Rewrites the parser's message as `thing: value; expected X`.
 fn message(key: Option<&str>, found: &str, error: &str) -> String {
     let bare = |name: &str| name.trim_matches('`').to_owned();
     if let Some((name, keys)) = error.strip_prefix("unknown field ").and_then(|rest| rest.split_once(", ")) {

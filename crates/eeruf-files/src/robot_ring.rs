@@ -1,12 +1,12 @@
-//! The robot of a ring file, as scenes take it: where its sensors stand, what they are and how they compare.
+//! The robot of a ring file in the form that scenes take: poses and modules of its sensors, and their limits.
 
 use eeruf_core::{Micros, SensorLimits};
 use eeruf_modules::Module;
 
-/// Place and heading, on a robot or of one.
+/// Position and heading on a robot, or of a robot.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Pose {
-    /// Ahead, in metres.
+    /// Distance ahead, in metres.
     pub x_m: f64,
     /// Distance to the left, in metres.
     pub y_m: f64,
@@ -14,8 +14,8 @@ pub struct Pose {
     pub heading_rad: f64,
 }
 
-/// Poses evenly spread over an arc of a circle about the origin, facing outwards: the first one `first_rad` from
-/// straight ahead, the next ones `spacing_rad` further each.
+/// Returns poses spaced evenly on an arc of a circle about the origin, facing outwards: the first at `first_rad` from
+/// straight ahead, each next one `spacing_rad` further.
 pub fn arc(sensors: usize, radius_m: f64, first_rad: f64, spacing_rad: f64) -> impl Iterator<Item = Pose> {
     (0..sensors).map(move |sensor| {
         let heading_rad = first_rad + spacing_rad * sensor as f64;
@@ -38,12 +38,12 @@ pub struct RobotRing {
     pub limits: Vec<SensorLimits>,
     /// Sets of sensors that fire together, bit x for sensor x.
     pub together: Vec<u64>,
-    /// The speed in m/s, which `T_delta` must cover too where it has no odometry.
+    /// The speed in m/s that `T_delta` must also cover, without odometry.
     pub speed_m_s: f64,
     /// Number of adjacent sensors that must not fire close together.
     pub neighbours: u8,
-    /// Change of the path of a foreign sound from one reading to the next, at most; `None` for `T_delta`.
+    /// Largest change of a foreign sound's path from one reading to the next; `None` for `T_delta`.
     pub path_change: Option<Micros>,
-    /// Time for which sound is audible; `None` for what modules say.
+    /// Time for which sound is audible; `None` for the modules' own.
     pub audible: Option<Micros>,
 }

@@ -1,13 +1,13 @@
-//! Directions that `MAVLink` has a name for.
+//! Directions that have a name in `MAVLink`.
 
-/// The angle between two directions, in degrees, 0 to 180.
+/// Returns the angle between two directions, in degrees, 0 to 180.
 fn between(one: f32, other: f32) -> f32 {
     let apart = (one - other).rem_euclid(360.0);
     apart.min(360.0 - apart)
 }
 
-/// The `MAV_SENSOR_ORIENTATION`, 0 to 7, of a sensor among others, in degrees clockwise from ahead. None if it looks
-/// elsewhere, or if another sensor looks into the same 45 degrees: `ArduPilot` keeps one distance for them, and each
+/// The `MAV_SENSOR_ORIENTATION`, 0 to 7, of a sensor among others, in degrees clockwise from ahead. `None` if no value
+/// fits, or if another sensor looks into the same 45 degrees: `ArduPilot` keeps one distance for them, and each
 /// `DISTANCE_SENSOR` would replace what `OBSTACLE_DISTANCE` said.
 pub fn rotation(yaws_deg: &[f32], sensor: usize) -> Option<u8> {
     let eighth = (yaws_deg.get(sensor)? / 45.0).round();

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 /// A schedule whose number of sensors is known only at run time.
 pub type AnySchedule = Schedule<MAX_SENSORS>;
 
-/// A schedule as it stands in a file.
+/// A schedule as a file holds it.
 ///
 /// ```
 /// let keys = "period_us = 40_000\nt_fire_a_us = [0, 20_000]\nt_fire_b_us = [2_000, 25_000]\n";
@@ -31,7 +31,7 @@ pub struct ScheduleFile {
 }
 
 impl ScheduleFile {
-    /// The schedule, or what is wrong with it in one line.
+    /// Returns the schedule.
     ///
     /// # Errors
     /// A message that names the key, its value and what is expected.
@@ -62,7 +62,7 @@ impl ScheduleFile {
 }
 
 impl<const K: usize> From<&Schedule<K>> for ScheduleFile {
-    /// In firing times if the lags are all zero, as they are for a schedule given by its firing times.
+    /// Writes firing times if all lags are zero, as in a schedule given by its firing times.
     fn from(schedule: &Schedule<K>) -> Self {
         let us = |times: &[Micros]| Some(times.iter().map(|time| time.as_micros()).collect());
         let (a, b) = (us(schedule.t_wait(Phase::A)), us(schedule.t_wait(Phase::B)));

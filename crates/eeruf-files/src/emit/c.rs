@@ -152,7 +152,7 @@ impl<const K: usize> fmt::Display for CLimits<'_, K> {
     }
 }
 
-/// Numbers, each with what follows it, separated by commas.
+/// Comma-separated numbers, each with a suffix.
 pub(super) struct Plain<F>(pub(super) F);
 
 impl<F: Fn() -> I, I: Iterator<Item = (u32, &'static str)>> fmt::Display for Plain<F> {

@@ -10,13 +10,13 @@ use super::{CLimits, EERUF_VERSION, Grouped, Plain};
 /// The set-up of a flow ring.
 #[derive(Clone, Copy, Debug)]
 pub struct Flow<'r, const K: usize> {
-    /// Settings of the firing. The seed is that of C and Arduino, whose ring may be given another one.
+    /// Settings of the firing. The seed is the one for C and Arduino; a ring may be given another.
     pub turns: &'r TurnSettings,
-    /// Settings of belief.
+    /// Settings of what the ring believes.
     pub belief: &'r BeliefSettings,
     /// Number of sensors.
     pub sensors: usize,
-    /// Time for which sensors listen; the longest, where they have limits of their own.
+    /// Listening time; the longest, if sensors have limits of their own.
     pub window: Micros,
     /// Time for which sensors are deaf after firing.
     pub blanking: Micros,
@@ -43,7 +43,7 @@ impl<const K: usize> Flow<'_, K> {
         FlowTab { source: self, name }.to_string()
     }
 
-    /// The echo line that each sensor shares, from 1; 0 for one of its own.
+    /// Returns for each sensor the number of the echo line that it shares, from 1; 0 for a line of its own.
     fn lines(&self) -> impl Iterator<Item = u32> + Clone {
         (0..self.sensors).map(|sensor| {
             let shares = |(_, set): &(u32, &u64)| *set >> sensor & 1 == 1;
@@ -63,7 +63,7 @@ impl<const K: usize> fmt::Display for Flow<'_, K> {
     }
 }
 
-/// Sets of sensors as Rust has them.
+/// Returns the sets of sensors in Rust syntax.
 fn sets(f: &mut fmt::Formatter<'_>, sets: impl Iterator<Item = u64>) -> fmt::Result {
     for (place, set) in sets.enumerate() {
         write!(f, "{}{set:#b}", if place == 0 { "" } else { ", " })?;
@@ -71,7 +71,7 @@ fn sets(f: &mut fmt::Formatter<'_>, sets: impl Iterator<Item = u64>) -> fmt::Res
     Ok(())
 }
 
-/// In Rust: see [`Flow::to_rust`].
+/// Rust text: see [`Flow::to_rust`].
 struct FlowRust<'r, const K: usize>(&'r Flow<'r, K>);
 
 impl<const K: usize> fmt::Display for FlowRust<'_, K> {
@@ -132,7 +132,7 @@ impl<const K: usize> fmt::Display for FlowRust<'_, K> {
     }
 }
 
-/// As a C header: see [`Flow::to_c`].
+/// C header: see [`Flow::to_c`].
 struct FlowHeader<'r, const K: usize>(&'r Flow<'r, K>);
 
 impl<const K: usize> fmt::Display for FlowHeader<'_, K> {
@@ -148,7 +148,7 @@ impl<const K: usize> fmt::Display for FlowHeader<'_, K> {
     }
 }
 
-/// As a file of an Arduino sketch: see [`Flow::to_arduino`].
+/// File of an Arduino sketch: see [`Flow::to_arduino`].
 struct FlowTab<'r, const K: usize> {
     source: &'r Flow<'r, K>,
     name: &'r str,

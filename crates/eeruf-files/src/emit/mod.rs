@@ -202,7 +202,7 @@ impl fmt::Display for UnevenSource<'_> {
     }
 }
 
-/// A field that is a list, as rustfmt writes it: in a line of 120 columns, or with a line for each.
+/// Writes a field that is a list as rustfmt does: on one line of up to 120 columns, or one line for each item.
 fn list<T>(
     f: &mut fmt::Formatter<'_>,
     name: &str,
@@ -231,7 +231,7 @@ fn list<T>(
     writeln!(f, "            ],")
 }
 
-/// Counts the columns of what is written to it.
+/// Counts the columns of the text written to it.
 struct Columns(usize);
 
 impl fmt::Write for Columns {

@@ -21,7 +21,7 @@ pub enum Form {
 }
 
 impl Form {
-    /// A line as a comment.
+    /// Writes a line as a comment.
     pub fn comment(self, line: &str) -> String {
         match self {
             Self::Toml => format!("# {line}\n"),
@@ -75,7 +75,7 @@ impl Form {
         text + &self.settings(modules, schedule.min_refire())
     }
 
-    /// The set-up of a flow ring, after its modules and before how a driver listens to them; none in TOML.
+    /// Writes the setup of a flow ring, after its modules and before how a driver listens to them; nothing in TOML.
     pub fn flow<const K: usize>(self, flow: &Flow<'_, K>, modules: &[Module]) -> String {
         let source = match self {
             Self::Toml => String::new(),
@@ -86,9 +86,9 @@ impl Form {
         self.modules(modules) + &source + &self.settings(modules, flow.turns.rest.max(flow.window))
     }
 
-    /// The settings of a driver in C, if the modules are alike and answer by a pulse: those that may be triggered again
-    /// sooner than the module says have it from the ring file, whose table keeps it. A driver takes one kind of module;
-    /// a comment in Rust and C lists the sensors that are of another.
+    /// Writes the settings of a driver in C, if all modules are alike and answer by a pulse. A ring file may let
+    /// modules be triggered sooner than their data sheet says. A driver takes one kind of module; a comment in Rust and
+    /// C lists the sensors that are of another.
     fn settings(self, modules: &[Module], min_refire: Micros) -> String {
         let Some(module) = modules.first() else { return String::new() };
         let others = (0..).zip(modules).filter(|&(_, other)| other != module);

@@ -1,4 +1,4 @@
-//! The air between the walls: how fast sound is in it and how much of it is lost on the way (ISO 9613-1).
+//! The air: its speed of sound and how much sound it absorbs (ISO 9613-1).
 
 /// State of the air.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -13,7 +13,7 @@ pub struct Air {
 }
 
 impl Default for Air {
-    /// A room: 20 C, 50 %, 101.325 kPa.
+    /// The air of a room: 20 C, 50 %, 101.325 kPa.
     fn default() -> Self {
         Self { temperature_c: 20.0, humidity_percent: 50.0, pressure_kpa: 101.325 }
     }

@@ -3,7 +3,7 @@
 use crate::module::Module;
 use crate::presets::{HC_SR04, JSN_SR04T, MB1010, MB1242, PING, POLAROID_6500, find};
 
-/// Modules that trigger, answer and rest as a preset does, by what people call them.
+/// Modules that trigger, answer and rest like a preset, under their common names.
 const LIKE: [(&[&str], &Module); 6] = [
     // The same board for 3.3 V, and others of its protocol: 10 us of trigger, the pulse of the echo.
     (
@@ -31,7 +31,7 @@ const LIKE: [(&[&str], &Module); 6] = [
     (&["polaroid", "6500", "senscomp", "senscomp-6500"], &POLAROID_6500),
 ];
 
-/// Modules that no ring can fire, or not by itself, and what then.
+/// Modules that no ring can fire, or only with help, and what to do instead.
 const OTHER: [(&[&str], &str); 3] = [
     (
         &["me007ys", "a01nyub", "a0221", "dyp-a02", "sen0208", "mb1240", "mb7389", "urm37", "urm09"],
@@ -52,7 +52,7 @@ fn is(known: &[&str], name: &str) -> bool {
     known.iter().any(|known| known.bytes().eq(name.bytes().map(plain)))
 }
 
-/// The preset that a module of this name, which has none, answers like; a user should be told.
+/// Returns the preset that a module of this name, which is no preset, behaves like. Tell the user of it.
 ///
 /// ```
 /// assert_eq!(eeruf_modules::like("HCSR04").map(|module| module.name), Some("hc-sr04"));
@@ -65,7 +65,7 @@ pub fn like(name: &str) -> Option<&'static Module> {
     LIKE.iter().find(|(known, _)| is(known, name)).map(|&(_, module)| module)
 }
 
-/// Words on a module of this name that is like no preset.
+/// Returns an explanation for a module of this name that behaves like no preset.
 pub(crate) fn why_not(name: &str) -> Option<&'static str> {
     OTHER.iter().find(|(known, _)| is(known, name)).map(|&(_, why)| why)
 }

@@ -1,4 +1,4 @@
-//! Modules as files say them: a name, or a table of what differs from one; one for all sensors, or a list.
+//! Modules in files: a name, or a table of differences from a named one; one for all sensors, or a list.
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -12,7 +12,7 @@ use crate::keys::{KEYS, ModuleError, Value};
 use crate::module::Module;
 use crate::presets::find;
 
-/// A module by name, or `like` one but for what else the table says.
+/// A module's name, or a table of differences from the module that `like` names.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct ModuleFile(pub Module);
 
@@ -21,7 +21,7 @@ pub struct ModuleFile(pub Module);
 pub enum ModulesFile {
     /// One module for all.
     All(Module),
-    /// One module for each, in their order.
+    /// One module for each sensor, in order.
     Of(Vec<Module>),
 }
 

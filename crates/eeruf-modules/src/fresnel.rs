@@ -2,11 +2,11 @@
 
 use core::f64::consts::{FRAC_PI_2, PI};
 
-/// From here on the asymptotic series are used, below it the power series.
+/// From here on the asymptotic series are used; below, the power series.
 const FAR: f64 = 3.0;
-/// As many terms as each of the power series has; they end below 1e-10 at [`FAR`].
+/// Number of terms of each power series: the last is below 1e-10 at [`FAR`].
 const NEAR_TERMS: usize = 27;
-/// As many terms as each of the asymptotic series has, the most that are worth it at [`FAR`].
+/// Number of terms of each asymptotic series, the most that help at [`FAR`].
 const FAR_TERMS: usize = 7;
 
 /// `(-1)^n / ((2 n + k)! (4 n + 2 k + 1))`, the power series of `C` for `k = 0`, of `S` for `k = 1`.
@@ -69,7 +69,7 @@ pub fn fresnel(x: f64) -> [f64; 2] {
 mod tests {
     use super::*;
 
-    /// By Simpson's rule in steps of 1e-4.
+    /// Integrates by Simpson's rule in steps of 1e-4.
     fn integrated(to: f64) -> [f64; 2] {
         let steps = 2 * (to * 5e3).ceil().max(1.0) as u32;
         let step = to / f64::from(steps);

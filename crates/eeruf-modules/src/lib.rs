@@ -1,4 +1,4 @@
-//! Ultrasonic ranging modules: what they hear, see, hold and need between two triggers.
+//! Ultrasonic ranging modules: range, beam, echo line and rest between two triggers.
 //!
 //! One description serves ring files, scenes, drivers and the simulator: a [`Module`] of plain numbers. Ten are
 //! [presets](PRESETS), each figure with the document that gives it, or marked as a choice.

@@ -1,6 +1,6 @@
 //! [`Module`]: an ultrasonic transducer with its electronics, in whole numbers.
 
-/// A clone of the HC-SR04 holds its line for as long without an echo, in microseconds.
+/// Time for which a clone of the HC-SR04 holds its line without an echo, in microseconds.
 pub(crate) const CLONE_HOLDS_US: u32 = 200_000;
 
 /// A ranging module. Change what differs from a preset, by field or by [`set`](Self::set).
@@ -10,19 +10,19 @@ pub struct Module {
     pub name: &'static str,
     /// The farthest range that it reports, in mm.
     pub sees_to_mm: u32,
-    /// The farthest wall off which its sound is still heard now and then, in mm.
+    /// Distance of the farthest wall whose echo is still heard now and then, in mm.
     pub hears_to_mm: u32,
-    /// Deaf time after it has fired, in us.
+    /// Time for which it is deaf after firing, in us.
     pub blanking_us: u32,
     /// Frequency in Hz.
     pub frequency_hz: u32,
-    /// Width of the band that it sends in and hears, around its frequency, in Hz.
+    /// Bandwidth around its frequency, in which it sends and hears, in Hz.
     pub bandwidth_hz: u32,
     /// Length of the burst in cycles.
     pub burst_cycles: u32,
-    /// The growth of its gain while it listens.
+    /// The way in which its gain grows while it listens.
     pub gain: Gain,
-    /// Radius of the piston that has its beam, in um.
+    /// Radius of the piston with the same beam, in um.
     pub radius_um: u32,
     /// The pattern near 90 degrees and beyond.
     pub beam: Beam,
@@ -32,13 +32,13 @@ pub struct Module {
     pub rest_us: u32,
     /// The length of the trigger pulse, in us; 0 for a command, a level, or a module that runs freely.
     pub trigger_us: u32,
-    /// The way to report.
+    /// The way in which it reports.
     pub interface: Interface,
     /// The time from the trigger to its report, in us; 0 where the echo's own edge reports it.
     pub report_us: u32,
 }
 
-/// Makes an enum of words as they stand in files.
+/// Makes an enum of words used in files.
 macro_rules! words {
     ($(#[doc = $about:literal])+ $name:ident { $( $(#[doc = $doc:literal])+ $variant:ident = $word:literal, )+ }) => {
         $(#[doc = $about])+
@@ -60,7 +60,7 @@ macro_rules! words {
         }
 
         impl Default for $name {
-            /// The first in its list.
+            /// The first in the list.
             fn default() -> Self {
                 Self::NAMES[0].1
             }
@@ -95,7 +95,7 @@ words! {
 }
 
 words! {
-    /// A module's way to report.
+    /// A module's way of reporting.
     Interface {
         /// A line rises when the echo is heard.
         Edge = "edge",
@@ -158,20 +158,19 @@ pub struct PulseTimes {
     /// A line that rises later after the trigger was not raised by it, as of exchanged wires. An HC-SR04 takes half a
     /// millisecond, so that one which fires a millisecond later raises a line later than this, a choice.
     pub latest_rise_us: u32,
-    /// Pulses as long as this are the module's own time-out, which may be a nineteenth short: no echo.
+    /// Pulses this long are the module's own time-out, which may be a nineteenth short: no echo.
     pub longest_us: u32,
     /// The longest that a healthy module holds its line where nothing is in range, and a quarter.
     pub longest_hold_us: u32,
 }
 
 impl Module {
-    /// Returns true if it hears the sound of another kind: whether their bands overlap.
+    /// Returns true if it hears another kind of module, that is, if their bands overlap.
     pub const fn hears(&self, other: &Self) -> bool {
         2 * self.frequency_hz.abs_diff(other.frequency_hz) < self.bandwidth_hz + other.bandwidth_hz
     }
 
-    /// Times by which a driver reads its line; `None` if it does not answer by the width of a pulse that ends without
-    /// an echo too.
+    /// Returns the times by which a driver reads its line; `None` if a pulse does not end without an echo too.
     pub const fn pulse_times(&self) -> Option<PulseTimes> {
         let NoEcho::Holds { us: hold_us } = self.no_echo else { return None };
         // Among modules of one name there are clones.

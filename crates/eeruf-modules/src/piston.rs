@@ -1,4 +1,4 @@
-//! The pattern of a round transducer in a baffle: how much of the sound leaves, or is heard, at an angle off its axis.
+//! The directivity of a round transducer in a baffle: the amplitude at an angle off its axis.
 
 use core::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, FRAC_PI_4, PI, TAU};
 
@@ -8,7 +8,7 @@ use crate::module::Beam;
 /// The first zero of `J1`: where the main lobe ends.
 const FIRST_NULL: f64 = 3.831_705_970_207_512;
 
-/// A baffled circular piston with a floor under its nulls.
+/// A baffled circular piston whose nulls have a floor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piston {
     /// Wave number times radius.
@@ -24,7 +24,7 @@ impl Piston {
     /// -28 dB (a choice).
     pub const DEFAULT_FLOOR: f64 = 0.039_810_717_055_349_72;
 
-    /// A piston of radius `radius_m` at wave number `wave_number` (rad/m), with the default floor and beam.
+    /// Makes a piston of radius `radius_m` at wave number `wave_number` (rad/m), with the default floor and beam.
     pub fn new(wave_number: f64, radius_m: f64) -> Self {
         Self { ka: wave_number * radius_m, floor: Self::DEFAULT_FLOOR, beam: Beam::default() }
     }
@@ -64,7 +64,7 @@ impl Piston {
         }
     }
 
-    /// The pattern in an endless baffle, up to 90 degrees.
+    /// Returns the pattern in an endless baffle, up to 90 degrees.
     fn endless(&self, off: f64) -> f64 {
         self.lobe(self.ka * libm::sin(off)).max(self.floor)
     }

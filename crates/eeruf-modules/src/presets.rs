@@ -1,4 +1,4 @@
-//! The presets, and where each of their figures comes from.
+//! The presets, with the source of each of their figures.
 
 use crate::module::{Beam, CLONE_HOLDS_US, Gain, Interface, Module, NoEcho};
 
@@ -11,7 +11,7 @@ pub enum Source {
     Choice(&'static str),
 }
 
-/// A module that is known, with the sources of its figures.
+/// A known module, with the sources of its figures.
 #[derive(Clone, Copy, Debug)]
 pub struct Preset {
     /// The module.

@@ -1,4 +1,4 @@
-//! [`Decoder`]: from bytes to what was sent, whatever happened to them on the way.
+//! [`Decoder`]: turns bytes into messages, even if the line has damaged them.
 
 use alloc::string::String;
 use alloc::vec::Vec;
@@ -23,13 +23,13 @@ pub enum Message {
         /// Name of its clock.
         clock: String,
     },
-    /// A firing, and what came of it.
+    /// A firing, and its outcome.
     Firing(FiringMessage),
     /// A period has ended.
     Period {
         /// The number, from 0.
         period: u32,
-        /// The latest firing in it.
+        /// The largest lateness of a firing in it.
         max_late: Micros,
         /// Number of edges that got lost on the board since it started, modulo 256.
         edges_lost: u8,
@@ -57,11 +57,11 @@ pub struct Received {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum FrameError {
-    /// Damaged or cut: it is no COBS, longer or shorter than any frame, or the check sum does not fit.
+    /// Damaged or cut: not COBS, too long or too short, or the check sum does not fit.
     Damaged,
-    /// The frame is whole and of a version of the protocol that is not known.
+    /// The frame is whole, but its protocol version is unknown.
     Version(u8),
-    /// The frame is whole, and this version has no such frame: another kind, or a value that cannot be.
+    /// The frame is whole, but this version has no such kind of frame or value.
     Content(&'static str),
 }
 
@@ -82,11 +82,11 @@ impl fmt::Display for FrameError {
 
 impl core::error::Error for FrameError {}
 
-/// Puts bytes together to frames. It may be started in the middle of one.
+/// Assembles frames from bytes. It may start in the middle of one.
 #[derive(Clone, Debug)]
 pub struct Decoder {
     bytes: [u8; LONGEST_FRAME],
-    /// Beyond the longest frame it only counts.
+    /// Number of bytes; past the longest frame it only counts.
     length: usize,
 }
 
@@ -97,7 +97,7 @@ impl Default for Decoder {
 }
 
 impl Decoder {
-    /// Takes in a byte; what the frame says that it ends, if it ends one.
+    /// Takes a byte. Returns the message of the frame that it ends, if any.
     ///
     /// # Errors
     /// [`FrameError`] for what stands between two zeros and is no frame; the next frame is read all the same.
@@ -194,7 +194,7 @@ fn period(mut fields: Fields<'_>) -> Result<Message, FrameError> {
     Ok(Message::Period { period, max_late, edges_lost, health: fields.0.into() })
 }
 
-/// The content that is not read yet.
+/// The rest of the content.
 struct Fields<'a>(&'a [u8]);
 
 impl Fields<'_> {

@@ -5,7 +5,7 @@ use eeruf_core::{MAX_SENSORS, Micros, judge::Explanation};
 use crate::firing::FiringMessage;
 use crate::{BY_HISTORY, BY_NOTHING, FIRING, HELLO, NO_ECHO, PERIOD, VERSION};
 
-/// A frame's content at its longest: that of a period's end with 64 sensors, and the check sum.
+/// The longest content of a frame: a period's end with 64 sensors, and the check sum.
 const LONGEST_CONTENT: usize = 10 + MAX_SENSORS + 2;
 /// The longest frame, with the byte that COBS adds and the zero at its end.
 pub const LONGEST_FRAME: usize = LONGEST_CONTENT + 2;
@@ -33,7 +33,7 @@ impl Frame {
 }
 
 impl Encoder {
-    /// The first frame will have the number 0.
+    /// Makes an encoder whose first frame has the number 0.
     pub const fn new() -> Self {
         Self { sequence: 0 }
     }
@@ -46,7 +46,7 @@ impl Encoder {
         content.finish()
     }
 
-    /// A firing.
+    /// Encodes a firing.
     pub fn firing(&mut self, firing: &FiringMessage) -> Frame {
         let mut content = self.begin(FIRING);
         content.push(&[firing.sensor, firing.phase, firing.kind as u8]);

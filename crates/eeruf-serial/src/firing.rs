@@ -1,6 +1,6 @@
 use eeruf_core::{Instant, Micros, Reading, ReadingKind, judge::Explanation};
 
-/// One firing of one sensor, and what came of it.
+/// One firing of one sensor, and its outcome.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct FiringMessage {
     /// The sensor, from 0.

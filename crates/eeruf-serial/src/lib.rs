@@ -62,7 +62,7 @@ const BY_NOTHING: u8 = 0xFF;
 /// An echo time that stands for no echo.
 const NO_ECHO: u32 = u32::MAX;
 
-/// The listing of the crate's README compiles and holds.
+/// Doctest of the crate's README.
 #[cfg(doctest)]
 #[doc = include_str!("../README.md")]
 struct Readme;

@@ -1,4 +1,4 @@
-//! [`Recorder`]: from the events of a ring to frames.
+//! [`Recorder`]: makes frames from the events of a ring.
 
 use eeruf_core::{Instant, MAX_SENSORS, Micros, RingEvent};
 
@@ -23,15 +23,15 @@ pub struct Recorder<const K: usize> {
 }
 
 impl<const K: usize> Recorder<K> {
-    /// Records for a board whose clock has this name: ASCII, of which 16 bytes are sent.
+    /// Makes a recorder for a board whose clock has this name: ASCII, of which 16 bytes are sent.
     pub const fn new(clock: &'static str) -> Self {
         const { assert!(K >= 1 && K <= MAX_SENSORS, "a Recorder has room for 1 to 64 sensors") };
         Self { encoder: Encoder::new(), clock, fired: [(Instant::from_micros(0), Micros::ZERO); K], firings: 0 }
     }
 
-    /// The frame that an event makes, if it makes one; hand in every event, with the `now` of its poll. `health` says
-    /// how a sensor is, as `eeruf_hc_sr04::Health as u8` (0 for well; all 0 where it is unknown), and `edges_lost` how
-    /// many edges found their queue full; both are asked for at a period's end only.
+    /// Returns the frame of an event, if it has one. Pass every event, with the `now` of its poll. `health` says how a
+    /// sensor is, as `eeruf_hc_sr04::Health as u8` (0 for well; all 0 where it is unknown), and `edges_lost` how many
+    /// edges found their queue full; both are asked for at a period's end only.
     pub fn event(
         &mut self,
         event: &RingEvent,

@@ -1,5 +1,4 @@
-//! The line between board and host: what is said arrives, and what is damaged on the way is never taken for something
-//! else.
+//! The line between board and host: messages arrive, and a damaged one is never taken for another.
 
 use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, judge::Explanation, tables::PAPER_12};
 use eeruf_serial::{Decoder, Encoder, FiringMessage, Frame, FrameError, LONGEST_FRAME, Message, Received, Recorder};
@@ -100,7 +99,7 @@ fn a_minute(numbers: &mut Rng, frames: usize) -> Vec<Frame> {
     (0..frames).map(|n| encoder.firing(&firing(n, numbers))).collect()
 }
 
-/// Bits flipped, bytes dropped, made up or repeated, the end lost, or everything made up.
+/// Flips bits, drops, adds or repeats bytes, cuts the end, or replaces everything.
 fn damage(frame: &Frame, numbers: &mut Rng) -> Vec<u8> {
     let mut bytes = frame.as_bytes().to_vec();
     match numbers.usize(..6) {

@@ -1,18 +1,18 @@
 //! The board's clock in the host's time.
 //!
-//! A frame says when its sensor fired and how long ago that was when it was made. What lies between the making and the
-//! arrival is the way, which is sometimes short and sometimes long; the shortest of the last ten seconds counts.
+//! A frame says when its sensor fired and how long ago that was when it was made. The time on the line varies; the
+//! shortest of the last ten seconds counts.
 
 use eeruf_core::{Instant, Micros};
 
 /// Least time for which an offset counts, in microseconds of the board.
 const KEPT_US: i64 = 5_000_000;
-/// A board whose clock goes wrong by so much has restarted.
+/// A clock that jumps by this much means that the board has restarted.
 const RESTART_NS: i64 = 2_000_000_000;
 
 #[derive(Debug, Default)]
 pub(crate) struct BoardClock {
-    /// The last instant, and what it is without wraps.
+    /// The last instant, raw and with its wraps counted.
     last: Option<(Instant, i64)>,
     /// The least of arrival minus making, in this stretch and the one before, and when this one began.
     offsets_ns: Option<[i64; 2]>,

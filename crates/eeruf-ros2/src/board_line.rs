@@ -8,19 +8,19 @@ use std::time::{Duration, SystemTime, UNIX_EPOCH};
 use eeruf_serial::{Decoder, FrameError, Received};
 use serial2::SerialPort;
 
-/// Input from the line, or an event of it.
+/// Input from the line, or a change of its state.
 pub(crate) enum FromLine {
     /// The port is open.
     Opened,
-    /// The line cannot be opened, or is no more: tried again each second.
+    /// The line cannot be opened, or has gone; it is tried again each second.
     Lost(String),
-    /// A frame, or what was none, and when its last byte was read, in nanoseconds since 1970.
+    /// A frame or a damaged one, and when its last byte was read, in nanoseconds since 1970.
     Frame(Result<Received, FrameError>, i64),
 }
 
 /// Interval at which a port that cannot be opened is tried.
 const AGAIN: Duration = Duration::from_secs(1);
-/// Time that a read waits.
+/// Longest time that a read waits.
 const PATIENCE: Duration = Duration::from_millis(200);
 
 /// Listens until the receiver is gone.

@@ -20,7 +20,7 @@ pub(crate) enum Level {
     Error = 2,
 }
 
-/// State of one thing.
+/// State of one subject of the report.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Status {
     pub(crate) level: Level,
@@ -40,7 +40,7 @@ const HEALTH: [&str; 6] = [
     "pin error",
 ];
 
-/// Missing, stuck line and pin error: nothing that the sensor says counts.
+/// Missing, stuck line and pin error: no reading of the sensor counts.
 const BROKEN: [u8; 3] = [1, 2, 5];
 
 struct Sensor {
@@ -51,7 +51,7 @@ struct Sensor {
     last: Option<(ReadingKind, Option<Micros>)>,
 }
 
-/// Since the last report.
+/// Counts since the last report.
 #[derive(Default)]
 struct Interval {
     firings: u32,
@@ -71,9 +71,9 @@ pub(crate) struct Diagnosis {
     blind_after: u32,
     silent_after_s: f64,
     interval: Interval,
-    /// Reason why the line is not open, until it is.
+    /// Reason why the line is not open; `None` once it is.
     pub(crate) line_lost: Option<String>,
-    /// Reason why whole frames cannot be used.
+    /// Reason why intact frames cannot be used.
     pub(crate) foreign: Option<String>,
     /// The number of sensors that the board says it has.
     pub(crate) board_sensors: Option<u8>,
@@ -110,7 +110,7 @@ impl Diagnosis {
         }
     }
 
-    /// Takes in a reading of a sensor, whose firing came so late, and what explains an ambiguous one.
+    /// Counts a reading of a sensor: how late it fired, and what explains it if it is ambiguous.
     pub(crate) fn reading(
         &mut self,
         now_s: f64,
@@ -138,7 +138,7 @@ impl Diagnosis {
         }
     }
 
-    /// Takes the board's frame at a period's end.
+    /// Counts the board's frame at a period's end.
     pub(crate) fn period(&mut self, period: u32, max_late: Micros, edges_lost: u8, health: &[u8]) {
         self.interval.max_late = self.interval.max_late.max(max_late);
         let more = match self.counted.replace((period, edges_lost)) {
@@ -155,19 +155,19 @@ impl Diagnosis {
         }
     }
 
-    /// A frame arrived damaged.
+    /// Counts a damaged frame.
     pub(crate) fn damaged(&mut self) {
         self.interval.damaged += 1;
         self.total_damaged += 1;
     }
 
-    /// Number of frames missing between two that arrived.
+    /// Counts frames missing between two that arrived.
     pub(crate) fn lost(&mut self, frames: u16) {
         self.interval.lost = self.interval.lost.saturating_add(frames.into());
         self.total_lost += u64::from(frames);
     }
 
-    /// A message could not be sent.
+    /// Counts a message that could not be sent.
     pub(crate) fn unsent(&mut self) {
         self.interval.unsent += 1;
     }
@@ -282,7 +282,7 @@ fn instant(now_s: f64) -> Instant {
     Instant::from_micros((now_s * 1e6) as u64 as u32)
 }
 
-/// The words for a state, and its age.
+/// Returns the words for a state and its age.
 fn said(state: SensorState) -> (String, Micros) {
     match state {
         SensorState::Obstacle { t_echo, age } => (format!("obstacle, echo after {} us", t_echo.as_micros()), age),
@@ -323,7 +323,7 @@ mod tests {
         }
     }
 
-    /// Level and first word of each status: line, timing, two sensors.
+    /// Returns level and first word of each status: line, timing, two sensors.
     fn said(diagnosis: &mut Diagnosis, now_s: f64) -> Vec<(Level, String)> {
         let report = diagnosis.report(now_s);
         assert_eq!(report.len(), 4);
@@ -335,7 +335,7 @@ mod tests {
         (Level::Ok, "well".to_owned())
     }
 
-    /// A sensor that sees something.
+    /// Adds a sensor that sees something.
     fn sees() -> (Level, String) {
         (Level::Ok, "obstacle,".to_owned())
     }

@@ -4,8 +4,9 @@ use crate::placing::Place;
 use crate::range::{Distance, Scale};
 use crate::view::View;
 
-/// The view along a heading from the robot's centre, with the distance from there. The nearest obstacle counts, then
-/// what is not known; free is what every sensor whose cone holds the ray at the maximum range calls clear.
+/// The view along a heading from the robot's centre, with the distance from there. The nearest obstacle counts first,
+/// then an unknown view. A direction is free if every sensor whose cone holds the ray at the maximum range calls it
+/// clear.
 pub(crate) fn along(
     heading_rad: f64,
     places: &[Place],

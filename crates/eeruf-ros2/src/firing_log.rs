@@ -37,7 +37,7 @@ impl FiringLog {
         writeln!(self.file, "{},{by},{late}", firing_row(*sensor, fired, *period, *phase, echo, kind))
     }
 
-    /// Brings to the disk what was written.
+    /// Writes buffered rows to the disk.
     pub(crate) fn flush(&mut self) -> io::Result<()> {
         self.file.flush()
     }

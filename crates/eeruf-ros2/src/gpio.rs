@@ -25,7 +25,7 @@ use embedded_hal::digital::{Error, ErrorKind, ErrorType, InputPin, OutputPin};
 
 use crate::board_line::{FromLine, nanoseconds};
 
-/// Budget of nodes in which the shortest period is looked for at the start: a second or two.
+/// Search budget, in nodes, for the shortest period at the start: a second or two.
 const BUDGET: u64 = 2_000_000;
 
 /// The pins of all sensors, counted from 0, and the clock that stamps their edges.
@@ -57,7 +57,7 @@ enum Way {
 }
 
 impl GpioRing {
-    /// A ring file by flow, or by the schedule that `eeruf design` finds.
+    /// Designs the ring of a file: flow, or the schedule that `eeruf design` finds.
     pub(crate) fn design(file: &Path, method: &str) -> Result<Self, String> {
         let wrong = |why: String| format!("ring: {}: {why}", file.display());
         let text = fs::read_to_string(file).map_err(|error| wrong(error.to_string()))?;
@@ -87,7 +87,7 @@ impl GpioRing {
         Ok(Self { way, settings, sensors: problem.sensors as u8 })
     }
 
-    /// Fires and listens until `each` returns false, which takes the messages. The robot moves as `speeds` say.
+    /// Fires and listens, and passes messages to `each` until it returns false. `speeds` gives the robot's motion.
     pub(crate) fn run<L: Lines>(
         &self,
         lines: L,
@@ -176,7 +176,7 @@ fn instant(us: u64) -> Instant {
     Instant::from_micros(us as u32)
 }
 
-/// Facts about the ring so far.
+/// Facts learned about the ring so far.
 struct Known {
     sequence: u16,
     fired: [(Instant, Micros); MAX_SENSORS],
@@ -215,7 +215,7 @@ impl Known {
     }
 }
 
-/// Trigger and echo line of a sensor; none for those that the ring does not have.
+/// Trigger and echo line of a sensor; `None` if the ring does not have it.
 struct Pin<L> {
     lines: Rc<L>,
     sensor: Option<u8>,
@@ -227,7 +227,7 @@ impl<L> Clone for Pin<L> {
     }
 }
 
-/// A pin that the kernel refuses; the driver makes the sensor's health of it.
+/// An error of the kernel at a pin; the driver turns it into the sensor's health.
 #[derive(Debug)]
 pub(crate) struct PinError;
 

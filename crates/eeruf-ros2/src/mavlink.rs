@@ -48,9 +48,9 @@ const SECTOR_DEG: f32 = 5.0;
 /// The middle of the first sector, clockwise from ahead. ArduPilot divides the circle into eight faces of 45 degrees
 /// and keeps the last run of sectors in each: the array begins where a face does, so that no face has two runs.
 const FIRST_SECTOR_DEG: f32 = -20.0;
-/// A sensor covers this much to each side at least: PX4 reads every second sector.
+/// Least half-width that a sensor covers: PX4 reads every second sector.
 const LEAST_HALF_VIEW_DEG: f32 = SECTOR_DEG;
-/// Nothing is known of the sector.
+/// Value of a sector about which nothing is known.
 const UNKNOWN: u16 = u16::MAX;
 
 /// The `base_mode` of an autopilot's `HEARTBEAT` in a datagram, of `MAVLink` 1 or 2.
@@ -75,7 +75,7 @@ fn base_mode(datagram: &[u8], system: u8) -> Option<u8> {
     (0..datagram.len()).find_map(frame)
 }
 
-/// Fields that are the same in all frames, and their count.
+/// Fields that all frames share, and the frame count.
 struct Packer {
     sequence: u8,
     system: u8,
@@ -83,7 +83,7 @@ struct Packer {
 }
 
 impl Packer {
-    /// A frame: zeros at the payload's end are left out.
+    /// Makes a frame, without the zeros at the payload's end.
     fn frame(&mut self, (number, extra): Kind, payload: &[u8]) -> Vec<u8> {
         let kept = payload.iter().rposition(|&byte| byte != 0).map_or(1, |last| last + 1);
         let payload = &payload[..kept];
@@ -109,20 +109,20 @@ pub(crate) struct Mavlink {
     field_of_view_rad: f32,
     unanswered_as: UnansweredAs,
     system: u8,
-    /// As its heartbeats say it; false before the first.
+    /// State in the autopilot's heartbeats; false before the first.
     armed: bool,
     /// Sensors that did not answer when the ring was last sent.
     failed: Vec<bool>,
-    /// True for sensors of which this was said since arming.
+    /// True for sensors reported as failed since arming.
     reported: Vec<bool>,
-    /// Clockwise, all at the vehicle's centre.
+    /// Poses in clockwise order, all at the vehicle's centre.
     places: Vec<Place>,
     /// The named rotation of each sensor that has one to itself.
     rotations: Vec<Option<u8>>,
 }
 
 impl Mavlink {
-    /// To `udp:HOST:PORT`.
+    /// Opens the connection `udp:HOST:PORT`.
     pub(crate) fn open(parameters: &Parameters) -> Result<Self, String> {
         let to = &parameters.mavlink;
         let wrong = |why: &str| format!("mavlink: {to}: {why}; expected udp:HOST:PORT");
@@ -172,12 +172,12 @@ impl Mavlink {
         }
     }
 
-    /// Returns true while a failed sensor keeps back what would pass the vehicle's proximity check.
+    /// Returns true while a failed sensor holds back the distances, so that the vehicle's proximity check fails.
     fn holds_back(&self) -> bool {
         self.unanswered_as == UnansweredAs::Hold && !self.armed && self.failed.contains(&true)
     }
 
-    /// Says that we are here, and whether all sensors answer; each second.
+    /// Sends a heartbeat and whether all sensors answer, once a second.
     pub(crate) fn heartbeat(&mut self) -> std::io::Result<()> {
         self.listen();
         let is_well = !self.failed.contains(&true);

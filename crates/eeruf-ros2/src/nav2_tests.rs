@@ -19,7 +19,7 @@ use crate::view::View;
 const FREE: u8 = 0;
 const LETHAL: u8 = 254;
 const UNKNOWN: u8 = 255;
-/// The map is a square about the robot.
+/// Half the side of the map, a square about the robot.
 const HALF_M: f64 = 4.5;
 
 struct Grid {
@@ -228,7 +228,7 @@ impl Layer for Ranges {
     }
 }
 
-/// A case: sensors on a circle of 20 cm so far apart, a wall ahead, a person who crosses 1.5 m ahead, a turn.
+/// A case: sensors on a circle of 20 cm, this far apart, a wall ahead, a person who crosses 1.5 m ahead, a turn.
 #[derive(Clone, Copy, Debug)]
 struct Case {
     spacing_deg: f64,

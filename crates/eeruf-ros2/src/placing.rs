@@ -1,4 +1,4 @@
-//! Where the sensors are on the robot, out of a ring file and the URDF that it may name.
+//! Poses of the sensors on the robot, from a ring file and the URDF that it may name.
 
 use std::fs;
 
@@ -8,7 +8,7 @@ use eeruf_sim::{Pose, pose_of};
 
 use crate::parameters::Parameters;
 
-/// The place of each sensor; empty if nothing says it.
+/// The pose of each sensor; empty if unknown.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Placing {
     pub(crate) places: Vec<Place>,
@@ -16,7 +16,7 @@ pub(crate) struct Placing {
     pub(crate) urdf_links: Vec<String>,
 }
 
-/// Where a sensor is, in the robot's frame, and where it looks.
+/// Position of a sensor in the robot's frame, and its direction.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Place {
     pub(crate) x_m: f64,
@@ -70,7 +70,7 @@ impl Placing {
         Self { places: poses.iter().map(place).collect(), urdf_links: vec![] }
     }
 
-    /// The sensors' places with their frames, except the URDF's own links: whoever publishes the robot publishes them.
+    /// The sensors' places with their frames, except the URDF's own links, which the robot's publisher publishes.
     pub(crate) fn frames<'a>(&'a self, frame_ids: &'a [String]) -> impl Iterator<Item = (&'a Place, &'a String)> {
         self.places.iter().zip(frame_ids).filter(|(_, frame_id)| !self.urdf_links.contains(frame_id))
     }

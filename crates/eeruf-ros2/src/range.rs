@@ -4,7 +4,7 @@ use eeruf_core::{Micros, ReadingKind, SpeedOfSound};
 
 use crate::parameters::Parameters;
 
-/// Meaning of a reading for the world.
+/// The distance of a reading, or its meaning.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Distance {
     /// Something is there, in metres.
@@ -34,12 +34,12 @@ impl Scale {
         }
     }
 
-    /// The distance at which an echo takes so long, in metres.
+    /// Returns the distance for an echo time, in metres.
     pub(crate) fn metres(&self, t_echo: Micros) -> f64 {
         f64::from(t_echo.as_micros()) * 1e-6 * self.sound_m_s / 2.0
     }
 
-    /// Meaning of a reading; `None` for one without any: rejected, ambiguous, unanswered, or not yet confirmed.
+    /// Returns what a reading means; `None` if it says nothing: rejected, ambiguous, unanswered, or not yet confirmed.
     pub(crate) fn distance(&self, kind: ReadingKind, t_echo: Option<Micros>) -> Option<Distance> {
         match (kind, t_echo) {
             (ReadingKind::Accepted, Some(t_echo)) => {
@@ -60,7 +60,7 @@ impl Scale {
 }
 
 impl Distance {
-    /// The number that stands for it in a `Range`.
+    /// Returns the number for it in a `Range`.
     pub(crate) fn number(self) -> f32 {
         match self {
             Self::At(metres) => metres,

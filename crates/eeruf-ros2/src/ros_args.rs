@@ -1,4 +1,4 @@
-//! Arguments as ROS 2 gives them to a node, `--ros-args .. --`, and the names that come of them.
+//! The arguments that ROS 2 gives to a node, `--ros-args .. --`, and the names that follow from them.
 
 /// ROS's arguments for the node: its name, its namespace, its parameters and other names for topics.
 #[derive(Clone, Debug, PartialEq)]
@@ -6,7 +6,7 @@ pub(crate) struct RosArgs {
     node: String,
     /// From the root, without a slash at its end: empty, or as `/robot_1`.
     namespace: String,
-    /// From and to, in their order, not yet expanded.
+    /// Pairs of old and new name, in order, not yet expanded.
     rules: Vec<(String, String)>,
     pub(crate) given: Vec<Given>,
 }
@@ -15,7 +15,7 @@ pub(crate) struct RosArgs {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Given {
     File(String),
-    /// A name and a piece of YAML.
+    /// A name and its value in YAML.
     One(String, String),
 }
 
@@ -88,7 +88,7 @@ impl RosArgs {
         Ok(())
     }
 
-    /// Subject of a rule, without the node's name before it; none if it is for another node.
+    /// Returns the left side of a rule without the node's name; `None` if the rule is for another node.
     fn own<'r>(&self, name: &'r str) -> Option<&'r str> {
         match name.split_once(':') {
             Some((node, rest)) => (node == self.node).then_some(rest),
@@ -104,12 +104,12 @@ impl RosArgs {
         &self.node
     }
 
-    /// As ROS wants it: `/`, or as `/robot_1`.
+    /// Returns the namespace in ROS's form: `/` or `/robot_1`.
     pub(crate) fn namespace(&self) -> &str {
         if self.namespace.is_empty() { "/" } else { &self.namespace }
     }
 
-    /// The node's full name, as `/robot_1/eeruf`.
+    /// Returns the node's full name, such as `/robot_1/eeruf`.
     pub(crate) fn full_name(&self) -> String {
         format!("{}/{}", self.namespace, self.node)
     }

@@ -1,4 +1,4 @@
-//! The main loop: what comes in from the board goes out as ranges, diagnostics, `MAVLink` and a log.
+//! The main loop: frames from the board become ranges, diagnostics, `MAVLink` messages and a log.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -21,9 +21,9 @@ use crate::ros::Ros;
 use crate::simulated::Simulator;
 use crate::view::View;
 
-/// Interval at which topics are looked at; a ring of 64 has a reading every millisecond or two.
+/// Interval at which topics are polled; a ring of 64 has a reading every millisecond or two.
 const LOOK: Duration = Duration::from_millis(5);
-/// The shortest time between two pictures of the whole ring.
+/// The shortest time between two messages about the whole ring.
 const PICTURE: Duration = Duration::from_millis(100);
 /// Interval at which faults are reported.
 const REPORT: Duration = Duration::from_secs(1);
@@ -85,11 +85,11 @@ fn source(parameters: &Parameters) -> String {
 struct EerufNode {
     ros: Option<Ros>,
     simulator: Option<Simulator>,
-    /// Readings that each sensor of the simulation would have had alone, at its last firing.
+    /// Readings that each sensor of the simulation would have had alone at its last firing.
     truth: Vec<(View, f32)>,
     mavlink: Option<Mavlink>,
     log: Option<FiringLog>,
-    /// Where a ring on pins learns how the robot moves.
+    /// Source of the robot's motion, for a ring on pins.
     speeds: Option<Sender<Speeds>>,
     diagnosis: Diagnosis,
     scale: Scale,
@@ -101,7 +101,7 @@ struct EerufNode {
     has_news: bool,
     pictured: Option<Instant>,
     began: Instant,
-    /// The last message about the line, so that it is written once.
+    /// The last message about the line, to print each message once.
     said: String,
 }
 
@@ -133,7 +133,7 @@ impl EerufNode {
         self.began.elapsed().as_secs_f64()
     }
 
-    /// Takes what has come in, and waits a little if nothing has.
+    /// Reads new input, or waits a little if there is none.
     fn look(&mut self, line: Option<&Receiver<FromLine>>) -> Result<(), String> {
         let Some(line) = line else {
             std::thread::sleep(LOOK);
@@ -194,7 +194,7 @@ impl EerufNode {
         }
     }
 
-    /// Simulates up to now.
+    /// Simulates until the present.
     fn simulate(&mut self) -> Result<(), String> {
         let Some(simulator) = &mut self.simulator else { return Ok(()) };
         match self.ros.as_ref().and_then(Ros::velocity) {

@@ -1,4 +1,4 @@
-//! A ring without hardware: the first robot of a scene, simulated at the pace of the clock on the wall.
+//! A ring without hardware: the first robot of a scene, simulated in real time.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -10,12 +10,12 @@ use eeruf_sim::{Fault, FaultKind, Method, Options, Simulation, Stop, World};
 use crate::board_line::nanoseconds;
 use crate::placing::Placing;
 
-/// The longest piece that is simulated at once, in seconds: what is published stays even.
+/// The longest time simulated in one step, in seconds, so that messages come evenly.
 const PIECE_S: f64 = 0.02;
-/// A simulation that is so far behind the clock on the wall, in seconds, waits for it no more.
+/// Delay, in seconds, beyond which a slow simulation no longer catches up with real time.
 const BEHIND_S: f64 = 1.0;
 
-/// The scene of a file.
+/// Reads the scene of a file.
 pub(crate) fn world(file: &Path) -> Result<Arc<World>, String> {
     let text = std::fs::read_to_string(file).map_err(|error| format!("simulate: {}: {error}", file.display()))?;
     let world = World::from_text_with(file, &text, eeruf_design::robot_ring);
@@ -47,13 +47,13 @@ fn broken(faults: &[Fault], sensor: u8, time_s: f64) -> Option<ReadingKind> {
     })
 }
 
-/// Place where the robot is, in the scene.
+/// The robot's position and motion in the scene.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Course {
     pub(crate) x_m: f64,
     pub(crate) y_m: f64,
     pub(crate) yaw_rad: f64,
-    /// Ahead, in the robot's frame.
+    /// Speed ahead, in the robot's frame.
     pub(crate) v_m_s: f64,
     pub(crate) w_rad_s: f64,
 }
@@ -73,7 +73,7 @@ impl Simulator {
         Ok(Self { simulation, began_ns: nanoseconds(), skipped_s: 0.0 })
     }
 
-    /// Simulates what has passed by the clock on the wall; the readings, and true if the simulation is slower than it.
+    /// Simulates the real time that has passed. Returns the readings, and true if the simulation is too slow for it.
     pub(crate) fn go_on(&mut self) -> Result<(Vec<Simulated>, bool), String> {
         let passed_s = (nanoseconds() - self.began_ns) as f64 * 1e-9 - self.skipped_s;
         let behind_s = passed_s - self.simulation.time_s();
@@ -110,7 +110,7 @@ impl Simulator {
         Ok(read)
     }
 
-    /// From now on the robot drives so.
+    /// Sets the robot's velocity from now on.
     pub(crate) fn drive(&mut self, v_m_s: f64, w_rad_s: f64) -> Result<(), String> {
         self.simulation.set_velocity(0, v_m_s, w_rad_s).map_err(|error| format!("cmd_vel: {error}"))
     }

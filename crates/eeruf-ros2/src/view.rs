@@ -1,4 +1,4 @@
-//! The state of the space before each sensor, as it is published.
+//! The published state of the space before each sensor.
 
 use eeruf_core::{Micros, ReadingKind, watch::SensorState};
 
@@ -7,7 +7,7 @@ use crate::range::{Distance, Scale};
 /// State of the space before a sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum View {
-    /// The sensor works, and this is what it sees.
+    /// The sensor works, and sees this.
     Sees(Distance),
     /// The sensor does not answer, its line is broken, or it no longer fires: the space before it is not free.
     Unanswered,

@@ -28,7 +28,7 @@ pub(crate) struct Header {
 /// `sensor_msgs/Range::ULTRASOUND`.
 pub(crate) const ULTRASOUND: u8 = 0;
 
-/// `sensor_msgs/Range`, as it is from ROS 2 Iron on; Humble's ends before the variance.
+/// `sensor_msgs/Range` of ROS 2 Iron and later; Humble's ends before the variance.
 #[derive(Clone, Debug, Serialize)]
 pub(crate) struct Range {
     pub(crate) header: Header,
@@ -168,7 +168,7 @@ pub(crate) struct Twist {
     pub(crate) angular: Vector3,
 }
 
-/// Covariance of six numbers; zeros for what is exactly known.
+/// Covariance of six numbers; zero means exact.
 type Covariance = [[f64; 6]; 6];
 
 /// `nav_msgs/Odometry`, whose pose and twist have a covariance each.

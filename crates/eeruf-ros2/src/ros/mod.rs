@@ -33,27 +33,27 @@ use messages::{
 
 use scene::Scene;
 
-/// Outputs that need the places of the sensors.
+/// Publishers that need the poses of the sensors.
 struct Placed {
     places: Vec<Place>,
     base_frame: String,
     cloud: Publisher<PointCloud2>,
     scan: Publisher<LaserScan>,
-    /// Held so that those who come later receive what it sent.
+    /// Kept so that later subscribers receive what it sent.
     _transforms: Publisher<TfMessage>,
 }
 
 pub(crate) struct Ros {
-    /// Leaves when it is dropped.
+    /// Leaves the domain when dropped.
     _node: Node,
     ranges: Vec<Publisher<Range>>,
     frame_ids: Vec<String>,
     diagnostics: Publisher<DiagnosticArray>,
-    /// None without places of the sensors.
+    /// `None` without poses of the sensors.
     placed: Option<Placed>,
-    /// None with hardware.
+    /// `None` with hardware.
     scene: Option<Scene>,
-    /// The robot's motion, where a ring on pins listens for it.
+    /// The robot's motion, for a ring on pins.
     odometry: Option<Subscription<Odometry>>,
     field_of_view: f32,
     min_range: f32,
@@ -62,15 +62,14 @@ pub(crate) struct Ros {
     hardware: String,
 }
 
-/// Reliable for those who ask for it and no hindrance for those who do not; a reader that does not acknowledge holds
-/// the node up for no longer than this.
+/// Reliable for subscribers that ask for it. One that does not acknowledge holds up the node for no longer than this.
 const PUBLISHING: QosProfile = QosProfile::publisher_default()
     .reliability_reliable(WhenFull::Wait(Duration::from_millis(10)))
     .history(History::KeepLast { depth: 10 });
-/// For transforms that never change: those who come later receive them, too.
+/// For transforms that never change: later subscribers receive them, too.
 const LATCHED: QosProfile =
     QosProfile { durability: Durability::TransientLocal, history: History::KeepLast { depth: 1 }, ..PUBLISHING };
-/// As ROS 2 calls it, sensor data: what gets lost is not asked for again.
+/// Quality of service named sensor data in ROS 2: lost messages are not sent again.
 const LISTENING: QosProfile = QosProfile::subscription_default().history(History::KeepLast { depth: 64 });
 
 impl Ros {
@@ -114,7 +113,7 @@ impl Ros {
         })
     }
 
-    /// Publishes a sensor's range, of a firing at this time; false if that cannot be sent.
+    /// Publishes a sensor's range, of a firing at this time; false if sending failed.
     pub(crate) fn publish_range(&self, sensor: u8, fired_ns: i64, range: f32) -> bool {
         let at = usize::from(sensor);
         let (Some(publisher), Some(frame_id)) = (self.ranges.get(at), self.frame_ids.get(at)) else { return false };
@@ -131,7 +130,7 @@ impl Ros {
         publisher.publish(message).is_ok()
     }
 
-    /// Publishes what all sensors see and how old that is, in seconds, and their scan; false if that cannot be sent.
+    /// Publishes what all sensors see, with its age in seconds, and their scan; false if sending failed.
     pub(crate) fn publish_ring(&self, now_ns: i64, views: &[(View, f32)], scale: &Scale) -> bool {
         let Some(placed) = &self.placed else { return true };
         let header = Header { stamp: Time::from_nanoseconds(now_ns), frame_id: placed.base_frame.clone() };
@@ -140,18 +139,18 @@ impl Ros {
         placed.scan.publish(scan).is_ok() && sent
     }
 
-    /// The velocity that a simulated robot was asked for since: ahead and of its turn.
+    /// Returns the latest commanded velocity of a simulated robot: ahead, and turning.
     pub(crate) fn velocity(&self) -> Option<Result<(f64, f64), String>> {
         self.scene.as_ref()?.velocity()
     }
 
-    /// Publishes where a simulated robot is and what its sensors would see alone; false if that cannot be sent.
+    /// Publishes where a simulated robot is and what its sensors would see alone; false if sending failed.
     pub(crate) fn publish_truth(&self, now_ns: i64, course: Course, views: &[(View, f32)]) -> bool {
         let (Some(scene), Some(placed)) = (&self.scene, &self.placed) else { return true };
         scene.publish(Time::from_nanoseconds(now_ns), course, &placed.places, views, self.min_range)
     }
 
-    /// Publishes how everything is; false if that cannot be sent.
+    /// Publishes the diagnostics; false if sending failed.
     pub(crate) fn publish_diagnostics(&self, now_ns: i64, report: &[Status]) -> bool {
         let status = report.iter().map(|status| DiagnosticStatus {
             level: status.level as u8,
@@ -168,7 +167,7 @@ impl Ros {
         self.diagnostics.publish(DiagnosticArray { header, status: status.collect() }).is_ok()
     }
 
-    /// Hands on how the robot has moved since; an error for a message that is not as it must be.
+    /// Passes on how the robot has moved since; an error for an invalid message.
     pub(crate) fn take(&self) -> impl Iterator<Item = Result<Speeds, String>> {
         self.odometry
             .iter()
@@ -177,7 +176,7 @@ impl Ros {
     }
 }
 
-/// The node, and what its topics are called.
+/// The node, and the names of its topics.
 struct Topics<'a> {
     node: Node,
     args: &'a RosArgs,
@@ -209,7 +208,7 @@ impl Topics<'_> {
         self.node.create_subscription(&topic, None).map_err(wrong(name))
     }
 
-    /// Publishes where the sensors are, once and for all.
+    /// Publishes the poses of the sensors, once.
     fn placed(&mut self, placing: &Placing, base_frame: &str, frame_ids: &[String]) -> Result<Placed, String> {
         let cloud = self.publisher("~/points", ["sensor_msgs", "PointCloud2"], &PUBLISHING)?;
         let scan = self.publisher("~/scan", ["sensor_msgs", "LaserScan"], &PUBLISHING)?;
@@ -230,7 +229,7 @@ impl Topics<'_> {
     }
 }
 
-/// The robot's speeds, rounded up; what is no number is none.
+/// Returns the robot's speeds, rounded up; `None` if they are not numbers.
 fn speeds(twist: &Twist) -> Result<Speeds, String> {
     let speeds = [twist.linear.x.hypot(twist.linear.y), twist.angular.z.abs()];
     match speeds.iter().all(|speed| speed.is_finite()) {

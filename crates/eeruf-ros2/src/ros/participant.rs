@@ -5,7 +5,7 @@ use std::net::{IpAddr, Ipv4Addr, UdpSocket};
 
 use ros2_client::dds::rustdds::{DomainParticipant, DomainParticipantBuilder};
 
-/// Numbers that are passed over at most; the next is kept as it is.
+/// Largest number of participant numbers skipped; the next is used in any case.
 const ATTEMPTS: usize = 10;
 
 /// Joins a domain; on this machine alone where `ROS_LOCALHOST_ONLY` is 1 or `ROS_AUTOMATIC_DISCOVERY_RANGE` is
@@ -43,7 +43,7 @@ fn ports(domain: u16, participant: u16) -> [u16; 2] {
     [first + 10, first + 11]
 }
 
-/// Returns true if a socket of this process has this port, or if that cannot be seen.
+/// Returns true if a socket of this process has this port, or if that cannot be determined.
 #[cfg(target_os = "linux")]
 fn is_own(port: u16) -> bool {
     use nix::sys::socket::{SockaddrIn, getsockname};
@@ -52,7 +52,7 @@ fn is_own(port: u16) -> bool {
     numbers.filter_map(|fd| getsockname::<SockaddrIn>(fd).ok()).any(|address| address.port() == port)
 }
 
-/// Returns true: it cannot be seen.
+/// Returns true: this system does not tell.
 #[cfg(not(target_os = "linux"))]
 fn is_own(_: u16) -> bool {
     true

@@ -1,5 +1,5 @@
-//! The part of a simulation beside the ring: it publishes where the robot is and what its sensors would see alone, and
-//! listens for a velocity.
+//! The rest of a simulation: it publishes where the robot is and what its sensors would see alone, and takes velocity
+//! commands.
 
 use ros2_client::{Publisher, Subscription};
 
@@ -33,7 +33,7 @@ impl Scene {
         })
     }
 
-    /// The last speed ahead and rate of turn that were asked for since.
+    /// Returns the latest commanded speed ahead and rate of turn.
     pub(super) fn velocity(&self) -> Option<Result<(f64, f64), String>> {
         let mut last = None;
         while let Some(heard) = self.velocity.take().transpose() {
@@ -43,7 +43,7 @@ impl Scene {
         last
     }
 
-    /// Publishes where the robot is, and what each sensor would see alone; false if that cannot be sent.
+    /// Publishes where the robot is, and what each sensor would see alone; false if sending failed.
     pub(super) fn publish(
         &self,
         stamp: Time,

@@ -45,9 +45,9 @@ impl InputPin for Idle {
 /// The ring without the fault, and what it reads.
 pub(crate) struct Control {
     ring: HostRing<ScheduledRing<'static, SENSORS>, Idle>,
-    /// The sensor that is well here.
+    /// The sensor that is healthy here.
     well: u8,
-    /// The edges to come on its line, the later one first.
+    /// The coming edges on its line, the latest first.
     ahead: Vec<Edge>,
     pub(crate) read: Read,
 }

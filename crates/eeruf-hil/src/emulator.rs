@@ -1,4 +1,4 @@
-//! An emulated board as a process: records come out of its standard output, answers go into its standard input.
+//! An emulated board as a process: its standard output carries records, its standard input answers.
 //!
 //! The firmware opens both as files, by the debugger's file access. What it says as text goes to standard error.
 
@@ -11,16 +11,16 @@ use std::time::Duration;
 
 use eeruf_hil::{Ahead, Orders, Record};
 
-/// A run takes seconds; a board that hangs is ended after this.
+/// Time after which a board that hangs is ended; a run takes seconds.
 const LONGEST: Duration = Duration::from_secs(120);
 
-/// A board under way.
+/// A running board.
 pub(crate) struct Emulator {
     child: Arc<Mutex<Child>>,
     input: ChildStdin,
     output: BufReader<ChildStdout>,
     text: Option<JoinHandle<String>>,
-    /// Ends the watch; what the watch says is whether it had to end the board.
+    /// Channel that ends the watch; the watch tells if it had to end the board.
     watch: Option<(Sender<()>, JoinHandle<bool>)>,
 }
 
@@ -76,7 +76,7 @@ impl Emulator {
         self.send(&words)
     }
 
-    /// The next thing that the board says; `None` when it has ended.
+    /// Returns the next record of the board; `None` when it has ended.
     pub(crate) fn next(&mut self) -> Result<Option<Record>, String> {
         let mut bytes = [0; Record::BYTES];
         match self.output.read(&mut bytes[..1]) {
@@ -90,8 +90,8 @@ impl Emulator {
         Ok(Some(Record(core::array::from_fn(|n| u32::from_le_bytes(words[n])))))
     }
 
-    /// Ends a board that has said its last, or with which something is wrong. Fails unless all went well and it left
-    /// with 0; what it said as text is then part of the error.
+    /// Waits for a board that has sent its last record, or that has failed. Fails unless it exited with 0; its text is
+    /// then part of the error.
     pub(crate) fn finish(mut self, outcome: Result<(), String>) -> Result<(), String> {
         let status = {
             let mut child = self.child.lock().unwrap_or_else(PoisonError::into_inner);

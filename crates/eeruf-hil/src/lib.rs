@@ -53,28 +53,28 @@ pub struct Orders {
     pub start: Instant,
     /// Number of periods to run.
     pub periods: u32,
-    /// After which period, counted from 0, the main loop stalls.
+    /// The period, counted from 0, after which the main loop stalls.
     pub stall_after: u32,
     /// Duration; zero for never.
     pub stall: Micros,
 }
 
 impl Orders {
-    /// As words.
+    /// Converts to words.
     pub const fn to_words(self) -> [u32; 4] {
         [self.start.as_micros(), self.periods, self.stall_after, self.stall.as_micros()]
     }
 
-    /// From words.
+    /// Converts from words.
     pub const fn from_words([start, periods, stall_after, stall]: [u32; 4]) -> Self {
         Self { start: Instant::from_micros(start), periods, stall_after, stall: Micros::new(stall) }
     }
 }
 
-/// The most edges that an answer holds: a choice; the host refuses a run that needs more.
+/// The most edges in an answer (a choice); the host refuses a run that needs more.
 pub const MOST_AHEAD: usize = 48;
 
-/// An edge to come on an echo line.
+/// A coming edge on an echo line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Ahead {
     /// The edge, and when.
@@ -84,13 +84,13 @@ pub struct Ahead {
 }
 
 impl Ahead {
-    /// As two words.
+    /// Converts to two words.
     pub const fn to_words(self) -> [u32; 2] {
         let Edge { sensor, high, at } = self.edge;
         [sensor as u32 | (high as u32) << 8 | (self.lost as u32) << 9, at.as_micros()]
     }
 
-    /// From two words.
+    /// Converts from two words.
     pub const fn from_words([what, at]: [u32; 2]) -> Self {
         let edge = Edge { sensor: what as u8, high: what & 1 << 8 != 0, at: Instant::from_micros(at) };
         Self { edge, lost: what & 1 << 9 != 0 }
@@ -107,7 +107,7 @@ pub struct Record(pub [u32; 6]);
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u8)]
 pub enum Topic {
-    /// The ring is handed an edge.
+    /// The ring gets an edge.
     Edge,
     /// The ring is polled.
     Poll,
@@ -131,10 +131,10 @@ impl Topic {
 const NONE: u32 = u32::MAX;
 
 impl Record {
-    /// The length on the way.
+    /// The length in bytes.
     pub const BYTES: usize = 24;
 
-    /// As it goes over the pipe: little-endian words.
+    /// Returns the bytes on the pipe: little-endian words.
     pub fn to_bytes(self) -> [u8; Self::BYTES] {
         let mut bytes = [0; Self::BYTES];
         for (place, word) in bytes.chunks_exact_mut(4).zip(self.0) {
@@ -152,32 +152,32 @@ impl Record {
         Self::new(topic, sensor, flag, [at.as_micros(), 0, 0, 0, 0])
     }
 
-    /// The ring is handed an edge.
+    /// Makes the record of an edge.
     pub const fn edge(edge: Edge) -> Self {
         Self::at(Topic::Edge, edge.sensor, edge.high as u8, edge.at)
     }
 
-    /// The ring is polled.
+    /// Makes the record of a poll.
     pub const fn poll(now: Instant) -> Self {
         Self::at(Topic::Poll, 0, 0, now)
     }
 
-    /// The driver looks at an echo line.
+    /// Makes the record of a look at an echo line.
     pub const fn level(sensor: u8, high: bool) -> Self {
         Self::new(Topic::Level, sensor, high as u8, [0; 5])
     }
 
-    /// A trigger pin has fallen.
+    /// Makes the record of the end of a trigger pulse.
     pub const fn trigger(sensor: u8, at: Instant) -> Self {
         Self::at(Topic::Trigger, sensor, 0, at)
     }
 
-    /// Returns the time until which the board sleeps.
+    /// Makes the record of the time until which the board sleeps.
     pub const fn deadline(at: Instant) -> Self {
         Self::at(Topic::Deadline, 0, 0, at)
     }
 
-    /// The event that a poll returned, or that there was none.
+    /// Makes the record of a poll's event, or of none.
     pub fn event(event: Option<&RingEvent>) -> Self {
         match event {
             None => Self::new(Topic::Event, 0, 0, [0; 5]),
@@ -207,7 +207,7 @@ impl Record {
         }
     }
 
-    /// The state of the sensors, and the number of edges that found the queue full.
+    /// Makes the record of the sensors' state and the number of edges that found the queue full.
     pub fn state(health: [Health; SENSORS], edges_lost: u8) -> Self {
         let code = health.iter().fold(0, |sum, &health| sum << 4 | health as u32);
         Self::new(Topic::State, 0, edges_lost, [code, 0, 0, 0, 0])
@@ -223,12 +223,12 @@ impl Record {
         (self.0[0] >> 8) as u8
     }
 
-    /// A level or direction, a kind of event, a count.
+    /// Returns a level or direction, a kind of event, or a count.
     pub const fn flag(self) -> u8 {
         (self.0[0] >> 16) as u8
     }
 
-    /// The instant that it names, for those that name one.
+    /// Returns the instant of a record that has one.
     pub const fn instant(self) -> Instant {
         Instant::from_micros(self.0[1])
     }
@@ -314,7 +314,7 @@ mod tests {
     }
 }
 
-/// The listings of the project's README compile and hold. Here, since a crate that is published cannot see the file.
+/// Doctest of the project's README; it is here because a published crate cannot see that file.
 #[cfg(doctest)]
 #[doc = include_str!("../../../README.md")]
 struct Readme;

@@ -12,11 +12,11 @@ use crate::played::PlayedLines;
 
 /// The sensor that has the faults, from 0.
 pub(crate) const FAULTY: u8 = 2;
-/// From the trigger's fall to the rise of the line, when the sound has been sent.
+/// Time from the trigger's fall to the rise of the line, after the burst.
 const RISE_US: u64 = 450;
 /// The module's own time-out, after which its line falls without an echo.
 const TIME_OUT_US: u64 = HC_SR04.no_echo.hold_us() as u64;
-/// The firing from which on a line is stuck, whenever the board gets there.
+/// The firing from which on a line is stuck.
 const STUCK_FROM: u32 = 20;
 /// No interrupt comes later than this: some instructions at 64 ns each, and other interrupts before it.
 const LATEST_US: u64 = 200;
@@ -31,12 +31,12 @@ pub(crate) enum LineFault {
     StuckHigh,
     /// Each rise comes twice, and another pulse follows the true one.
     Chatters,
-    /// Every fifth rise and every seventh fall make no interrupt.
+    /// Every fifth rise and every seventh fall cause no interrupt.
     InterruptsLost,
 }
 
 impl LineFault {
-    /// The faults of [`FAULTY`] that it is made of, from this time on.
+    /// Returns the faults of [`FAULTY`] from this time on.
     pub(crate) fn faults(self, from_s: f64) -> Vec<Fault> {
         let kinds = match self {
             Self::None => vec![],
@@ -52,7 +52,7 @@ impl LineFault {
         kinds.into_iter().map(fault).collect()
     }
 
-    /// The name that the driver should give it.
+    /// Returns the name that the driver should report.
     pub(crate) fn name(self) -> Health {
         match self {
             Self::None => Health::Well,
@@ -90,13 +90,13 @@ pub(crate) struct Lines<'w> {
     world: LockStep<'w>,
     fault: LineFault,
     faults: Vec<Fault>,
-    /// The edges that the lines have instead of those that the world gives.
+    /// Edges that replace those of the world.
     played: Option<PlayedLines>,
-    /// By the pin at which the line is.
+    /// Lines by their pin.
     lines: [Line; SENSORS],
-    /// A reading of the board's clock, and which microsecond since the start that was.
+    /// A reading of the board's clock, and the microseconds from the start to it.
     clock: (Instant, u64),
-    /// The latest that an edge was noticed.
+    /// The largest delay before the board noticed an edge.
     pub(crate) latest: Micros,
 }
 
@@ -122,7 +122,7 @@ impl<'w> Lines<'w> {
         self.clock.1
     }
 
-    /// A sensor is triggered.
+    /// Triggers a sensor.
     pub(crate) fn trigger(&mut self, sensor: u8, at: Instant) -> Result<(), String> {
         let at = self.since_start(at);
         let pin = self.played.as_ref().map_or(sensor, |played| played.pin_of(sensor));
@@ -185,7 +185,7 @@ impl<'w> Lines<'w> {
         Ok(ahead.collect())
     }
 
-    /// The board has noticed an edge. It must be the next one of its line, at its time or a little later.
+    /// Takes an edge that the board has noticed. It must be the next one of its line, at its time or a little later.
     pub(crate) fn notice(&mut self, edge: Edge) -> Result<(), String> {
         let noticed_at = self.since_start(edge.at);
         let expected = self.edges(edge.sensor);
@@ -206,7 +206,7 @@ impl<'w> Lines<'w> {
         Ok(())
     }
 
-    /// Before a sensor is triggered again all edges of its last firing must have been noticed.
+    /// Checks before a new trigger that the board has noticed all edges of the sensor's last firing.
     fn all_noticed(&self, sensor: u8) -> Result<(), String> {
         let edges = self.edges(sensor).iter().filter(|&&(_, _, lost)| !lost).count();
         let noticed = self.lines.get(usize::from(sensor)).map_or(0, |line| line.noticed);

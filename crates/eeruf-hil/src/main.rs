@@ -29,7 +29,7 @@ use crate::lines::FAULTY;
 use crate::played::PlayedLines;
 use crate::run::{Fault, PERIODS, Pace, Run, run, run_flow, run_played};
 
-/// In this scene no sensor of the flow ring has fewer of its readings believed.
+/// Least share of readings believed of any sensor of the flow ring in this scene.
 const LEAST_BELIEVED: f64 = 0.5;
 
 /// A board's name, and the command that emulates it.

@@ -1,4 +1,4 @@
-//! Edges that lines play after each trigger, whatever the world is: faults of lines as a test writes them.
+//! Edges played on lines after each trigger, in place of the world's: faults described by a test.
 
 use eeruf_hil::SENSORS;
 
@@ -38,12 +38,12 @@ impl PlayedLines {
         }
     }
 
-    /// The pin at which the line of this sensor is.
+    /// Returns the pin of this sensor's line.
     pub(crate) fn pin_of(&self, sensor: u8) -> u8 {
         self.pins.get(usize::from(sensor)).copied().unwrap_or(sensor)
     }
 
-    /// The edges at a pin after the trigger of the sensor whose line is there.
+    /// Returns the edges after a trigger on the line at a pin.
     pub(crate) fn at_pin(&self, pin: u8) -> &[Played] {
         let edges = self.pins.iter().zip(&self.edges).find(|&(&of, _)| of == pin).map(|(_, edges)| &edges[..]);
         edges.unwrap_or_default()

@@ -18,11 +18,11 @@ use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
 use crate::emulator::Emulator;
 use crate::lines::Lines;
 
-/// The state that ring and pins share: the board, its lines, and the first error.
+/// State shared by ring and pins: the board, its lines, and the first error.
 pub(crate) struct Session<'w> {
     pub(crate) board: Emulator,
     pub(crate) lines: Lines<'w>,
-    /// Time when the board was started and what its clock read, where it is held to the pace of the clock on the wall.
+    /// Time when the board was started and its clock's reading then, if it runs in real time.
     pace: Option<(std::time::Instant, Instant)>,
     wrong: Option<String>,
 }
@@ -35,7 +35,7 @@ impl<'w> Session<'w> {
         Rc::new(RefCell::new(Self { board, lines, pace, wrong: None }))
     }
 
-    /// The board's next record, which must be about this.
+    /// Returns the board's next record, which must have this topic.
     pub(crate) fn expect(&mut self, topic: Topic, sensor: u8) -> Result<Record, String> {
         let record = self.board.next()?.ok_or_else(|| format!("the board ended where {topic:?} was expected"))?;
         if record.topic() == Some(topic) && record.sensor() == sensor {
@@ -105,17 +105,17 @@ impl InputPin for Pin<'_> {
     }
 }
 
-/// The board says when things happen; nothing has to be waited for.
+/// A delay that does not wait: the board's records give all times.
 pub(crate) struct NoDelay;
 
 impl DelayNs for NoDelay {
     fn delay_ns(&mut self, _: u32) {}
 }
 
-/// A ring as the board's, on pins of this kind.
+/// A ring like the board's, on pins of this kind.
 pub(crate) type HostRing<R, P> = HcSr04Ring<R, P, P, NoDelay, SENSORS>;
 
-/// Puts a ring on pins as the board does.
+/// Puts a ring on pins like the board.
 pub(crate) fn on_pins<P: Plan, J: Judge, I: OutputPin + InputPin, const H: usize>(
     ring: Ring<P, J, SENSORS, 1, H>,
     pin: impl Fn(u8) -> I,
@@ -131,7 +131,7 @@ pub(crate) struct Reference<'w, R> {
 }
 
 impl<'w, P: Plan, J: Judge, const H: usize> Reference<'w, Ring<P, J, SENSORS, 1, H>> {
-    /// With a ring that was made as the board's, at the same instant.
+    /// Makes a reference from a ring built like the board's, at the same instant.
     pub(crate) fn new(session: &Shared<'w>, ring: Ring<P, J, SENSORS, 1, H>) -> Result<Self, String> {
         let pin = |sensor| Pin { session: Rc::clone(session), sensor };
         Ok(Self { session: Rc::clone(session), ring: on_pins(ring, pin)? })
@@ -142,7 +142,7 @@ impl<'w, P: Plan, J: Judge, const H: usize> Reference<'w, Ring<P, J, SENSORS, 1,
         self.ring.edge(edge).map_err(|error| error.to_string())
     }
 
-    /// Polls, and compares the event with the one that the board got.
+    /// Polls, and compares the event with the board's.
     pub(crate) fn poll(&mut self, now: Instant) -> Result<Option<RingEvent>, String> {
         let event = self.ring.poll(now);
         let mut session = self.session.borrow_mut();
@@ -158,7 +158,7 @@ impl<'w, P: Plan, J: Judge, const H: usize> Reference<'w, Ring<P, J, SENSORS, 1,
         }
     }
 
-    /// Compares the deadline, and how the sensors are, with what the board says of them.
+    /// Compares the deadline and the state of the sensors with the board's.
     pub(crate) fn compare(&self, said: Record) -> Result<(), String> {
         let mine = match said.topic() {
             Some(Topic::Deadline) => Record::deadline(self.ring.next_deadline()),

@@ -23,18 +23,18 @@ pub(crate) enum Fault {
     Line(LineFault),
     /// The main loop stalls for 50 ms after a period's end.
     Stall,
-    /// The clock wraps in the middle.
+    /// The clock wraps in the middle of the run.
     Wrap,
 }
 
 const STALL_AFTER: u32 = PERIODS / 2;
 const STALL: Micros = Micros::from_millis(50);
 
-/// Largest change of an echo time of one sound from run to run.
+/// Largest change of a sound's echo time between runs.
 const MOST_MOVED: Micros = Micros::new(25);
 
 impl Fault {
-    /// All but none.
+    /// All faults.
     pub(crate) const ALL: [Self; 6] = [
         Self::Line(LineFault::Missing),
         Self::Line(LineFault::StuckHigh),
@@ -44,7 +44,7 @@ impl Fault {
         Self::Wrap,
     ];
 
-    /// Looks it up by its name on the command line.
+    /// Returns the fault with this name on the command line.
     pub(crate) fn named(name: &str) -> Option<Self> {
         Some(match name {
             "none" => Self::None,
@@ -80,30 +80,30 @@ impl fmt::Display for Fault {
 /// The outcome of a run.
 pub(crate) struct Run {
     pub(crate) read: Read,
-    /// The latest that an edge was noticed.
+    /// The largest delay before the board noticed an edge.
     pub(crate) latest_edge: Micros,
-    /// The latest firing.
+    /// The largest lateness of a firing.
     pub(crate) max_late: Micros,
-    /// The last health of each sensor that was not well.
+    /// The last reported fault of each sensor that had one.
     named: [Health; SENSORS],
-    /// The period at whose end it first did.
+    /// The period at whose end it was first reported.
     named_after: Option<u32>,
 }
 
-/// The difference between the sensors without a fault and a run without one.
+/// Difference of the healthy sensors from a run without a fault.
 pub(crate) struct Change {
-    /// Readings of another kind.
+    /// Number of readings of another kind.
     pub(crate) kinds: usize,
-    /// Change of echo times.
+    /// Changes of echo times.
     pub(crate) moved: Micros,
 }
 
 /// The speed of a board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Pace {
-    /// As fast as it is emulated.
+    /// As fast as the emulation goes.
     Free,
-    /// By the clock on the wall, for those who listen to its serial line.
+    /// In real time, for programs that listen to its serial line.
     Wall,
 }
 
@@ -114,7 +114,7 @@ pub(crate) fn run(world: &World, fault: Fault, periods: u32, pace: Pace, emulato
     run_ring(world, (fault, None), periods, pace, emulator, make, true)
 }
 
-/// A run of that board, at the pace of the clock on the wall, whose lines play these edges.
+/// Runs that board in real time, with these edges on its lines.
 pub(crate) fn run_played(world: &World, lines: PlayedLines, periods: u32, emulator: &[String]) -> Result<Run, String> {
     let make = |now| Ring::new(&SCHEDULE, CONFIG, now).map_err(|error| error.to_string());
     run_ring(world, (Fault::None, Some(lines)), periods, Pace::Wall, emulator, make, false)
@@ -228,7 +228,7 @@ impl Run {
         self.read.iter().map(Vec::len).sum()
     }
 
-    /// Number of readings of a kind, of all sensors or of all but this one.
+    /// Returns the number of readings of a kind, of all sensors or of all but one.
     pub(crate) fn of(&self, kind: ReadingKind, but: Option<u8>) -> usize {
         let sensors = self.read.iter().enumerate().filter(|&(sensor, _)| Some(sensor) != but.map(usize::from));
         sensors.flat_map(|(_, read)| read).filter(|reading| reading.kind == kind).count()

@@ -1,4 +1,4 @@
-//! Core's events and errors as the numbers that C gives.
+//! Events and errors of `eeruf-core` as the numbers that C gives.
 
 use eeruf_core::{
     Micros, PeriodStats, Phase, Reading, ReadingKind, RingError, RingEvent, Tally,
@@ -10,7 +10,7 @@ use eeruf_core::{
 
 use crate::{Flat, NO_ECHO};
 
-/// An event as numbers.
+/// Returns an event as numbers.
 pub fn flat(event: &RingEvent) -> Flat {
     let mut flat = [0; 18];
     match *event {
@@ -31,12 +31,12 @@ pub fn flat(event: &RingEvent) -> Flat {
     flat
 }
 
-/// Number of readings of each kind.
+/// Returns the number of readings of each kind.
 fn counts(tally: &Tally<u8>) -> [u32; 12] {
     ReadingKind::ALL.map(|kind| tally.of(kind))
 }
 
-/// An explanation as a number.
+/// Returns an explanation as a number.
 pub fn explanation(explained_by: Option<Explanation>) -> u32 {
     match explained_by {
         None => 0xFF,
@@ -45,17 +45,17 @@ pub fn explanation(explained_by: Option<Explanation>) -> u32 {
     }
 }
 
-/// An echo time as a number.
+/// Returns an echo time as a number.
 pub fn echo(t_echo: Option<Micros>) -> u32 {
     t_echo.map_or(NO_ECHO, Micros::as_micros)
 }
 
-/// Firings to come as numbers: sensor and instant.
+/// Returns coming firings as numbers: sensor and instant.
 pub fn upcoming(upcoming: impl Iterator<Item = Upcoming>) -> Vec<[u32; 2]> {
     upcoming.map(|Upcoming { sensor, due, .. }| [sensor.into(), due.as_micros()]).collect()
 }
 
-/// A state as numbers: kind, echo, age, why, explanation.
+/// Returns a state as numbers: kind, echo, age, why, explanation.
 pub fn state(state: SensorState) -> [u32; 5] {
     let known = |kind, t_echo: Option<Micros>, age: Micros| [kind, echo(t_echo), age.as_micros(), 0, 0xFF];
     match state {
@@ -82,7 +82,7 @@ pub fn state(state: SensorState) -> [u32; 5] {
 const SETTINGS: [&str; 11] =
     ["t_delta", "near", "path_change", "top_speed_mm_s", "hold", "most", "least", "rest", "dice", "seed", "window"];
 
-/// The status that C has for an error.
+/// Returns C's status for an error.
 pub fn status_of(error: &RingError) -> i32 {
     match error {
         RingError::Unverified => -14,
@@ -102,7 +102,7 @@ pub fn status_of(error: &RingError) -> i32 {
     }
 }
 
-/// The status that C has for the first violation.
+/// Returns C's status for the first violation.
 pub const fn status_of_violation(kind: ViolationKind) -> i32 {
     match kind {
         ViolationKind::CrosstalkA | ViolationKind::CrosstalkB => -11,

@@ -11,7 +11,7 @@ use eeruf_core::{
     watch::SensorWatch,
 };
 
-/// Settings within their ranges, or just outside.
+/// Draws settings within their ranges, or just outside.
 fn settings(r: &Random) -> (TurnSettings, BeliefSettings) {
     let (mut turns, mut belief) = (TurnSettings::new(r.within(1, u32::MAX)), BeliefSettings::DEFAULT);
     if r.once_in(2) {
@@ -62,7 +62,7 @@ fn own_limits<const K: usize>(r: &Random, window: u32) -> (EachSensor<K>, Vec<u3
     (limits, (0..K).flat_map(of_each).collect())
 }
 
-/// One flow ring for up to 4,000 steps, or until there are no numbers left; the number of its events.
+/// Runs one flow ring for up to 4,000 steps, or until the random bytes end. Returns the number of events.
 ///
 /// # Panics
 /// Where C and Rust differ.
@@ -95,7 +95,7 @@ pub fn run<const K: usize>(r: &Random) -> u64 {
     compare(r, c, status, FlowRing::<K>::flow(K, t, b, config, now), window, start)
 }
 
-/// Runs both, if they are made.
+/// Runs both rings, if both can be made.
 fn compare<const K: usize, U: OwnLimits>(
     r: &Random,
     mut c: C,
@@ -174,7 +174,7 @@ fn compare<const K: usize, U: OwnLimits>(
     count
 }
 
-/// Operations at and after a firing.
+/// Draws operations at and after a firing.
 fn fired<const K: usize, U: OwnLimits>(
     (world, uncertain): (&mut World, bool),
     c: &mut C,
@@ -209,7 +209,7 @@ fn fired<const K: usize, U: OwnLimits>(
     }
 }
 
-/// Operations at any time.
+/// Draws operations at any time.
 fn act<const K: usize, U: OwnLimits>(r: &Random, c: &mut C, ring: &mut FlowRing<K, 1, U>, now: u32) {
     let sensor = r.within(0, K as u32) as u8;
     match r.within(0, 14) {

@@ -19,7 +19,7 @@ use eeruf_core::{Micros, Phase, Schedule, VerifiedSchedule, conditions::Verified
 
 pub use random::Random;
 
-/// An event as numbers: kind, sensor, phase, then what the kind has.
+/// An event as numbers: kind, sensor, phase, then fields of that kind.
 pub type Flat = [u32; 18];
 /// The number that stands for no echo, on both sides.
 pub const NO_ECHO: u32 = u32::MAX;
@@ -55,7 +55,7 @@ pub enum Do {
     SetReportAfter,
 }
 
-/// A value between two numbers.
+/// An echo time known to be between two values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(missing_docs, reason = "named as the functions of eeruf.h")]
 pub enum Between {
@@ -76,7 +76,7 @@ pub struct Claim {
 }
 
 impl Claim {
-    /// The claim of a schedule that was verified, its layout apart.
+    /// Returns the claim of a verified schedule, without its layout.
     pub fn of(verified_for: VerifiedFor) -> Self {
         let VerifiedFor { t_delta, min_interval, window, separation, path_change, audible, .. } = verified_for;
         let path_change = path_change.map_or(u32::MAX, Micros::as_micros);
@@ -108,13 +108,13 @@ impl Drop for C {
 }
 
 impl C {
-    /// Nothing yet.
+    /// Makes an empty one.
     pub fn new() -> Self {
         // SAFETY: takes nothing.
         Self(unsafe { shim::shim_new() })
     }
 
-    /// A schedule as a table, not verified. Schedules are numbered as they are made.
+    /// Adds a schedule as a table, not verified. Schedules are numbered in order.
     pub fn schedule<const K: usize, const M: usize>(&mut self, schedule: &Schedule<K, M>) {
         let (mut order, mut gaps) = (vec![], vec![]);
         for phase in (0..M as u8).map(Phase) {
@@ -141,7 +141,7 @@ impl C {
         assert_eq!(self.verified(number, Claim::of(schedule.verified_for()), &[]), 0);
     }
 
-    /// `eeruf_schedule_check` of the schedule with this number and claim, which it keeps if that is fine.
+    /// Calls `eeruf_schedule_check` for this schedule and claim, and stores the claim if that succeeds.
     pub fn verified(&mut self, number: u32, claim: Claim, own: &[OwnNeeds]) -> i32 {
         let Claim { verified_for: [t_delta, interval, window, separation, path_change, audible], .. } = claim;
         let [layout, neighbours, stale] = [claim.layout, claim.neighbours, claim.stale_echo.into()].map(u32::from);
@@ -157,7 +157,7 @@ impl C {
         unsafe { shim::shim_ring(self.0, schedule, listening.as_ptr(), consecutive, now_us) }
     }
 
-    /// The next event, or the status of a poll without one.
+    /// Returns the next event, or the status of a poll without one.
     pub fn poll(&mut self, now_us: u32, change_us: Option<&[i32]>) -> Result<Flat, i32> {
         let mut flat = [0; 18];
         let change_us = change_us.map_or(std::ptr::null(), <[i32]>::as_ptr);
@@ -197,13 +197,13 @@ impl C {
         unsafe { shim::shim_deadline(self.0) }
     }
 
-    /// One of the functions that take a sensor and a number.
+    /// Calls a function that takes a sensor and a number.
     pub fn call(&mut self, what: Do, sensor: u8, value: u32) -> i32 {
         // SAFETY: a ring, or modules, that were made.
         unsafe { shim::shim_do(self.0, what as u32, sensor, value) }
     }
 
-    /// One of the functions that take a sensor and two numbers.
+    /// Calls a function that takes a sensor and two numbers.
     pub fn between(&mut self, what: Between, sensor: u8, least: u32, most: u32) -> i32 {
         // SAFETY: a ring, or modules, that were made.
         unsafe { shim::shim_between(self.0, what as u32, sensor, least, most) }

@@ -23,7 +23,7 @@ pub const FAULTY: u8 = 1;
 const PERIODS: u32 = 100;
 const T_DELTA_US: u32 = 240;
 const WINDOW_US: u32 = 40_000;
-/// The edges of a module that is well, before a wall at 1 m and before nothing.
+/// Edges of a healthy module, before a wall at 1 m and before nothing.
 const WALL: [Play; 2] = [Play { us: 450, high: true, is_lost: false }, Play { us: 6_280, high: false, is_lost: false }];
 const NOTHING: [Play; 2] = [WALL[0], Play { us: 38_450, high: false, is_lost: false }];
 
@@ -42,7 +42,7 @@ pub struct Play {
 pub enum Wiring {
     /// To its own pin.
     Own,
-    /// To the pin of this sensor, whose line is at the faulty one's.
+    /// To the pin of this sensor, whose own line goes to the faulty one's pin.
     Exchanged(u8),
     /// To its own pin, and the program does not make the call that its driver needs.
     Forgotten,
@@ -68,11 +68,11 @@ pub enum Says {
 pub struct Fault {
     /// The name.
     pub name: String,
-    /// Surroundings of the sensor.
+    /// The sensor's surroundings.
     pub before: String,
     wiring: Wiring,
     edges: Vec<Play>,
-    /// The right state, by a driver to which interrupts hand edges.
+    /// The right state for a driver that gets its edges by interrupts.
     pub says: Says,
 }
 
@@ -145,7 +145,7 @@ fn fault(row: &[&str]) -> Fault {
     Fault { name: name.to_owned(), before: before.to_owned(), wiring, edges, says }
 }
 
-/// The pins: the level of each line, and the sensor that was triggered last.
+/// The pins: the level of each line, and the sensor triggered last.
 #[derive(Default)]
 struct Wires {
     levels: [Cell<bool>; K],
@@ -158,7 +158,7 @@ trait Driver {
     /// The next event; the sensor that fires is triggered if the driver lets it.
     fn poll(&mut self, now: u32) -> Option<Flat>;
     fn edge(&mut self, sensor: u8, high: bool, at: u32);
-    /// A state as [`core_side::state`](state) has it.
+    /// Returns a state in the form of [`core_side::state`](state).
     fn state(&self, sensor: u8, now: u32) -> [u32; 5];
     fn is_well(&self, sensor: u8) -> bool;
 }
@@ -298,9 +298,9 @@ impl Driver for InC {
 pub struct Said {
     /// The kind of reading, as [`ReadingKind`] counts.
     pub kind: u32,
-    /// The state after it, as [`core_side::state`](state) has it.
+    /// The state after it, in the form of [`core_side::state`](state).
     pub state: [u32; 5],
-    /// True if the health of its line is well.
+    /// True if its line is healthy.
     pub is_well: bool,
 }
 
@@ -310,7 +310,7 @@ impl Said {
         self.kind == ReadingKind::Clear as u32 || self.state[0] == 2
     }
 
-    /// Returns true if this is what a driver must say.
+    /// Returns true if a driver must report this.
     pub fn is(&self, says: Says) -> bool {
         match says {
             Says::Obstacle(us) => self.kind == ReadingKind::Accepted as u32 && self.state[..2] == [1, us],

@@ -86,7 +86,7 @@ fn schedule(r: &Random, c: &mut C) -> VerifiedSchedule<K> {
     verified
 }
 
-/// The edges of a module that was triggered: mostly a pulse, and what real wiring adds.
+/// Returns the edges of a triggered module: mostly one pulse, with the disturbances of real wiring.
 fn pulse(r: &Random, edges: &mut Vec<(u32, u8, bool)>, now: u32, sensor: u8, width: u32) {
     let rise = now.wrapping_add(r.one_of(&[450, 450, r.duration(3_000)]));
     let fall = rise.wrapping_add(r.one_of(&[width, width, width + r.duration(300), 38_000, r.duration(40_000)]));
@@ -114,7 +114,7 @@ fn pulse(r: &Random, edges: &mut Vec<(u32, u8, bool)>, now: u32, sensor: u8, wid
     }
 }
 
-/// One ring of modules for up to 3,000 steps, or until there are no numbers left; how many events it had.
+/// Runs one ring of modules for up to 3,000 steps, or until the random bytes end. Returns the number of events.
 ///
 /// # Panics
 /// Where C and Rust differ.
@@ -144,7 +144,7 @@ pub fn run(r: &Random) -> u64 {
 /// A ring of modules on pins, or on none.
 type Modules<'s, T, I, D> = HcSr04Ring<ScheduledRing<'s, K>, T, I, D, K>;
 
-/// Runs both, if they are made. `faults`: those of the pins, if there are any.
+/// Runs both rings, if both can be made. `faults` are those of the pins, if any.
 fn compare<'s, T, I, D>(
     r: &Random,
     mut c: C,

@@ -1,4 +1,4 @@
-//! [`Random`]: seeded pseudo-random numbers, the same on every machine; or those that a fuzzer makes up.
+//! [`Random`]: seeded pseudo-random numbers, the same on every machine, or numbers from a fuzzer's bytes.
 
 use std::cell::Cell;
 use std::fmt;
@@ -26,22 +26,22 @@ impl fmt::Display for Random {
 }
 
 impl Random {
-    /// From a seed.
+    /// Draws from a seed.
     pub const fn new(seed: u64) -> Self {
         Self(Source::Seed(seed, Cell::new(seed)))
     }
 
-    /// From bytes: each number takes as many as it needs, little end first. Past their end all are 0.
+    /// Draws from bytes: each number takes the bytes that it needs, little-endian. Past the end all are 0.
     pub fn of_bytes(bytes: &[u8]) -> Self {
         Self(Source::Bytes(bytes.into(), Rc::default()))
     }
 
-    /// Returns true if the bytes are at their end; a seed never is.
+    /// Returns true if the bytes are used up; never with a seed.
     pub fn is_over(&self) -> bool {
         matches!(&self.0, Source::Bytes(bytes, taken) if taken.get() >= bytes.len())
     }
 
-    /// Any number.
+    /// Draws any number.
     pub fn any(&self) -> u64 {
         self.any_of(8)
     }
@@ -64,7 +64,7 @@ impl Random {
         }
     }
 
-    /// From `least` to `most`.
+    /// Draws a number from `least` to `most`.
     pub fn within(&self, least: u32, most: u32) -> u32 {
         let width = u64::from(most - least) + 1;
         let bytes = (u64::BITS - (width - 1).leading_zeros()).div_ceil(8) as usize;
@@ -72,12 +72,12 @@ impl Random {
         least + (self.any_of(bytes) % width) as u32
     }
 
-    /// Returns true once in this many times.
+    /// Returns true once in this many times on average.
     pub fn once_in(&self, times: u32) -> bool {
         self.within(1, times) == 1
     }
 
-    /// A duration of any order of magnitude up to `most`.
+    /// Draws a duration of any order of magnitude up to `most`.
     pub fn duration(&self, most: u32) -> u32 {
         let bits = self.within(0, 32 - most.leading_zeros());
         ((self.any_of(4) & 0xffff_ffff) as u32).checked_shr(32 - bits).unwrap_or(0).min(most)

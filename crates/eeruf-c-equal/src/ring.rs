@@ -32,7 +32,7 @@ impl Needs {
     }
 }
 
-/// Verifying, which only schedules of two phases can be.
+/// Verification, for schedules of two phases only.
 pub trait Verify: Sized {
     /// Verifies in Rust, which C must find so or not, and gives back the schedule, verified if it can be, and what it
     /// allows each sensor.
@@ -97,7 +97,7 @@ macro_rules! cannot_be_verified {
 }
 cannot_be_verified!(1 3 8);
 
-/// A schedule of this many sensors, in both languages, for a window that it mostly allows.
+/// Draws a schedule of this many sensors, in both languages, for a window that it mostly allows.
 fn schedule<const M: usize>(r: &Random, c: &mut C, sensors: u8, period: u32) -> Fires<M>
 where
     Schedule<K, M>: Verify,
@@ -156,7 +156,7 @@ type Table<'s, const M: usize> = Ring<ScheduledFiring<'s, K, M, &'s EachSensor<K
 /// A schedule, and what it allows each sensor.
 type Fires<const M: usize> = (Schedule<K, M>, EachSensor<K>);
 
-/// Actions that a caller may take now and then.
+/// Draws actions that a caller may take now and then.
 fn act<const M: usize>(r: &Random, c: &mut C, ring: &mut Table<'_, M>, now: u32) {
     let sensor = r.within(0, ring.sensors() as u32) as u8;
     match r.within(0, 12) {
@@ -188,7 +188,7 @@ fn act<const M: usize>(r: &Random, c: &mut C, ring: &mut Table<'_, M>, now: u32)
     assert_eq!(c.call(Do::IsEnabled, sensor, 0) == 1, ring.is_enabled(sensor));
 }
 
-/// One ring for up to 3,000 steps, or until there are no numbers left; how many events it had.
+/// Runs one ring for up to 3,000 steps, or until the random bytes end. Returns the number of events.
 ///
 /// # Panics
 /// Where C and Rust differ.

@@ -1,25 +1,25 @@
-//! Events around a ring: when it is polled, what it hears.
+//! Events around a ring: polls and echoes.
 
 use crate::core_side::status_of;
 use crate::{Between, C, Do, Random};
 use eeruf_core::{Instant, Micros, Ring, Silence, judge::Judge, plan::Plan};
 
-/// A clock that is late, jumps and wraps, and echoes on their way.
+/// A clock that is late, jumps and wraps, and coming echoes.
 pub struct World {
-    /// Source of chance.
+    /// The source of random numbers.
     pub random: Random,
     /// The clock.
     pub now: u32,
     /// Largest lateness of polls in this run.
     late: u32,
-    /// Echo time of what stands before each sensor.
+    /// Echo time of the obstacle before each sensor.
     distance_us: Vec<u32>,
     window_us: u32,
     echoes: Vec<(u32, u8)>,
 }
 
 impl World {
-    /// Some time, and something before each sensor.
+    /// Draws a start time, and an obstacle before each sensor.
     pub fn new(random: Random, sensors: u8, window_us: u32) -> Self {
         // Clocks wrap in many runs.
         let now = if random.once_in(2) { 0_u32.wrapping_sub(random.duration(5_000_000)) } else { random.any() as u32 };
@@ -28,7 +28,7 @@ impl World {
         Self { random, now, late, distance_us, window_us, echoes: vec![] }
     }
 
-    /// Turns the clock, mostly to the deadline or somewhat past it.
+    /// Advances the clock, mostly to the deadline or somewhat past it.
     pub fn turn_clock(&mut self, deadline: u32) {
         let ahead = deadline.wrapping_sub(self.now);
         let ahead = if ahead < 1 << 31 { ahead } else { 0 };
@@ -48,7 +48,7 @@ impl World {
         }
     }
 
-    /// Sound comes back to a sensor that has fired.
+    /// Adds the echo of a sensor that has fired.
     pub fn fired(&mut self, sensor: u8) {
         let (r, distance) = (&self.random, self.distance_us[usize::from(sensor)]);
         let own = distance.saturating_add(r.duration(300));
@@ -65,7 +65,7 @@ impl World {
         }
     }
 
-    /// The echoes that have come by now, and now and then one that has not, out of order, or of nobody.
+    /// Returns the echoes due by now, and now and then one that is early, out of order, or of no sensor.
     pub fn heard(&mut self) -> Vec<(u32, u8)> {
         let now = self.now;
         let mut heard: Vec<_> = self.echoes.extract_if(.., |(at, _)| now.wrapping_sub(*at) < 1 << 31).collect();
@@ -93,14 +93,14 @@ pub fn same<E>(c: &mut C, what: Do, sensor: u8, value: u32, rust: Result<(), E>)
     assert_eq!(c.call(what, sensor, value), expected, "{what:?} of sensor {sensor}, {value}");
 }
 
-/// Two numbers between which `at` lies, mostly close ones. Now and then they are swapped.
+/// Returns two numbers with `at` between them, mostly close ones. Now and then they are swapped.
 pub(crate) fn between(r: &Random, at: u32) -> [u32; 2] {
     let width = r.one_of(&[0, 16, r.duration(300), r.within(900, 1_100), r.duration(100_000), r.duration(u32::MAX)]);
     let earliest = at.wrapping_sub(r.within(0, width));
     [earliest, earliest.wrapping_add(width)]
 }
 
-/// Hands in an echo of a sensor at an instant; or, if times are uncertain, between two.
+/// Reports an echo of a sensor at an instant or, if times are uncertain, between two.
 pub(crate) fn hear<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize>(
     (r, uncertain): (&Random, bool),
     c: &mut C,
@@ -116,7 +116,7 @@ pub(crate) fn hear<P: Plan, J: Judge, const K: usize, const E: usize, const H: u
     assert_eq!(c.between(Between::Echo, sensor, earliest, latest), expected, "{earliest} {latest}");
 }
 
-/// Says that a sensor measured an echo time, none, or, if times are uncertain, one between two.
+/// Reports a measured echo time, none or, if times are uncertain, one between two.
 pub(crate) fn measure<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize>(
     (r, uncertain): (&Random, bool),
     c: &mut C,
@@ -134,7 +134,7 @@ pub(crate) fn measure<P: Plan, J: Judge, const K: usize, const E: usize, const H
     same(c, Do::Measured, sensor, echo.unwrap_or(crate::NO_ECHO), ring.measured(sensor, echo.map(Micros::new)));
 }
 
-/// Sets what silence means.
+/// Sets the meaning of silence.
 pub(crate) fn set_silence<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize>(
     r: &Random,
     c: &mut C,

@@ -1,4 +1,4 @@
-//! The times of an HC-SR04 in C and MicroPython are those of the driver, which has them of the module.
+//! The times of an HC-SR04 in C and MicroPython are those of the Rust driver.
 
 use eeruf_hc_sr04::{Settings, modules::HC_SR04};
 

@@ -1,4 +1,4 @@
-//! Faults of one echo line, in Rust and in C: never free space without evidence, and the right state of each.
+//! Faults of one echo line, in Rust and in C: no free space without evidence, and the right state for each.
 
 use std::collections::BTreeSet;
 
@@ -9,7 +9,7 @@ const FAULTS: &str = include_str!("../../../../tests/data/line-faults.txt");
 const LANGUAGES: [&str; 2] = ["Rust", "C"];
 const OUTCOMES: &str = "../../tests/data/line-fault-outcomes.txt";
 
-/// Hands each fault's outcome in each language to a check.
+/// Passes each fault's outcome in each language to a check.
 fn each(mut check: impl FnMut(&str, &Fault, &Outcome)) {
     let faults = Faults::read(FAULTS);
     for fault in &faults.faults {
@@ -117,7 +117,7 @@ fn cells(line: &str) -> Vec<&str> {
     line.trim_matches('|').split('|').map(str::trim).collect()
 }
 
-/// The document whose table has what was said in these languages.
+/// Returns the document with the results in these languages in its table.
 fn with_outcomes(document: &str) -> String {
     let head = document.lines().find(|line| line.starts_with("| fault")).map(cells).expect("a table of faults");
     let mut lines: Vec<String> = document.lines().map(str::to_owned).collect();

@@ -1,6 +1,6 @@
 //! C and Rust get the same configurations, echoes, faults, lateness and clock jumps, and must say the same.
 //!
-//! Each test compares 200,000 events; with `EERUF_C_EVENTS=10000000` as many as that.
+//! Each test compares 200,000 events, or as many as `EERUF_C_EVENTS` says.
 
 mod constants;
 mod line_faults;

@@ -33,7 +33,7 @@ fn explain(event: &mut RingEvent, c: &mut C) {
     c.explain(explanation(reading.explained_by) as u8);
 }
 
-/// One ring, its clock late, jumping and wrapping; how many frames it made.
+/// Runs one ring whose clock is late, jumps and wraps. Returns the number of frames.
 fn run(seed: u64) -> u64 {
     let (r, mut c) = (Random::new(seed), C::new());
     // A table that nobody verified, on both sides.

@@ -1,4 +1,4 @@
-//! The settings of every robot's flow ring are the same numbers in both.
+//! The settings of a flow ring are the same numbers in Rust and C, for every robot.
 
 use eeruf_core::{
     Micros,

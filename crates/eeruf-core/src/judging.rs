@@ -115,7 +115,7 @@ pub trait Sounds {
 pub enum Quiet {
     /// The last reading was believed, so less quiet will do.
     Less,
-    /// The same quiet as before.
+    /// Quiet stays as before.
     Same,
     /// The last reading may be another firing's sound.
     More,

@@ -22,7 +22,7 @@ const FLOOR: i64 = 1 << 33;
 const CEILING: i64 = FLOOR + 1;
 
 impl Bounce {
-    /// Its number in files and in Python: a wall's index; -1 minus a pole's; 2^32 plus an edge's; 2^33 for the floor
+    /// Number in files and in Python: a wall's index; -1 minus a pole's; 2^32 plus an edge's; 2^33 for the floor
     /// and one more for the ceiling.
     ///
     /// ```

@@ -1,5 +1,5 @@
-//! The scenes and rings of the repository and the checker of certificates, within the program, so that what the
-//! documents show runs anywhere.
+//! The repository's scenes and rings and the checker of certificates, built into the program, so that the documents'
+//! commands run anywhere.
 
 use include_dir::{Dir, include_dir};
 
@@ -7,7 +7,7 @@ static SCENES: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/scenes");
 static RINGS: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/rings");
 const CHECKER: (&str, &str) = ("checker/check_period.py", include_str!("../checker/check_period.py"));
 
-/// The examples: the path that they have in the repository, as `scenes/alcove.toml`, and their text. In order of paths.
+/// Returns the examples, ordered by path: the path in the repository, such as `scenes/alcove.toml`, and the text.
 pub fn all() -> Vec<(String, &'static str)> {
     let files = [("rings", &RINGS), ("scenes", &SCENES)].into_iter().flat_map(|(folder, files)| {
         files
@@ -19,7 +19,7 @@ pub fn all() -> Vec<(String, &'static str)> {
     files
 }
 
-/// The text of an example by its path, as `scenes/alcove.toml`; `None` where there is none.
+/// Returns the text of the example with this path, such as `scenes/alcove.toml`; `None` if there is none.
 pub fn text(path: &str) -> Option<&'static str> {
     all().into_iter().find_map(|(name, text)| (name == path).then_some(text))
 }

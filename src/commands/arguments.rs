@@ -1,4 +1,4 @@
-//! Errors in the arguments, as the same report as all others: `thing: value; expected X`, then the next command.
+//! Errors in arguments, printed like all other errors: `thing: value; expected X`, then the next command.
 
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -9,7 +9,7 @@ use clap::error::{ContextKind, ContextValue, ErrorKind};
 use crate::console::Settings;
 use crate::files::error::InputError;
 
-/// The options of output among arguments that were not parsed.
+/// Returns the output options among arguments that were not parsed.
 pub(crate) fn settings(words: &[String]) -> Settings {
     let has = |option: &str| words.iter().any(|word| word == option);
     let is_after_color = |when: &str| words.windows(2).any(|pair| pair[0] == "--color" && pair[1] == when);
@@ -49,7 +49,7 @@ pub(crate) fn is_picture(name: &Path) -> bool {
     name.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("svg") || ending.eq_ignore_ascii_case("png"))
 }
 
-/// Options of earlier versions, and what does their work.
+/// Options of earlier versions, and their replacements.
 const GONE: [(&str, &str); 7] = [
     ("--blanking-us", "schedules have two phases"),
     ("--fleet-number", "flow needs no numbers"),
@@ -60,7 +60,7 @@ const GONE: [(&str, &str); 7] = [
     ("--reach-us", "schedules have two phases"),
 ];
 
-/// Words of other programs, and the commands that do what they say.
+/// Commands of other programs, and eeruf's equivalents.
 const MEANT: [(&str, &str); 9] = [
     ("simulate", "study"),
     ("run", "study"),
@@ -143,12 +143,12 @@ pub(crate) fn describe(error: &clap::Error, words: &[String]) -> InputError {
     InputError::new(thing, format!("{found}; see `{path} --help`"))
 }
 
-/// A name without the marks of a usage line.
+/// Returns a name without the marks of a usage line.
 fn bare(name: &str) -> String {
     name.trim_matches(|c| "<>[]'.".contains(c)).to_owned()
 }
 
-/// The option or argument that no command has, and what was meant.
+/// Returns the unknown option or argument, and a suggestion.
 fn unknown(thing: String, suggested: Option<String>, words: &[String], command: &clap::Command) -> (String, String) {
     let has = |command: &clap::Command, long: &str| command.get_arguments().any(|arg| arg.get_long() == Some(long));
     // A negative number looks like an option; the word before it is the one to blame.
@@ -182,13 +182,13 @@ fn unknown(thing: String, suggested: Option<String>, words: &[String], command: 
     (thing, format!("unknown; {expected}"))
 }
 
-/// The option before a word, if one is there.
+/// Returns the option before a word, if there is one.
 fn before(words: &[String], word: &str) -> Option<String> {
     let pair = words.windows(2).find(|pair| pair[1] == word)?;
     pair[0].starts_with("--").then(|| pair[0].clone())
 }
 
-/// The command that was asked for, and its name with those above it.
+/// Returns the requested command, and its name with its parents' names.
 fn asked(words: &[String]) -> (clap::Command, String) {
     let (mut command, mut path) = (super::program(), "eeruf".to_owned());
     for word in words.iter().skip(1) {
@@ -200,7 +200,7 @@ fn asked(words: &[String]) -> (clap::Command, String) {
     (command, path)
 }
 
-/// The reason in the words of a user.
+/// Returns the reason in a user's words.
 fn expected(why: &str) -> String {
     if let Some(at) = why.find("expected ") {
         return why[at..].to_owned();

@@ -30,7 +30,7 @@ impl Written {
         }
     }
 
-    /// Writes the file and says what it proves.
+    /// Writes the file and reports what it proves.
     pub(crate) fn write(&self, file: &Path, condition: &str) -> Result<Answer, InputError> {
         match &self.text {
             Ok(text) => {

@@ -1,4 +1,4 @@
-//! `eeruf completions`: what a shell wants to know so that it completes verbs and options.
+//! `eeruf completions`: completion of verbs and options for a shell.
 
 use clap_complete::Shell;
 

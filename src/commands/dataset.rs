@@ -1,4 +1,4 @@
-//! `eeruf dataset`: simulated readings with what caused each of them.
+//! `eeruf dataset`: simulated readings with the cause of each.
 
 use std::path::{Path, PathBuf};
 
@@ -42,7 +42,7 @@ pub(crate) struct Args {
     physics: Physics,
 }
 
-/// One that believes everything, the paper's, and flow.
+/// The methods: one that believes everything, the paper's, and flow.
 const METHODS: [Method; 3] = [Method::Conventional, Method::Eeruf, Method::Flow];
 
 /// One file of readings.

@@ -171,7 +171,7 @@ struct Answered<'a> {
     rooms: Option<RoomsOrNot<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     how: Option<How>,
-    /// Neighbours by their number that do not hear each other where they stand.
+    /// Pairs of neighbours, by number, that do not hear each other in their places.
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     not_neighbours: &'a [(usize, usize)],
 }
@@ -285,7 +285,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     Ok(certified)
 }
 
-/// The answer's second part: how to fire by a way, under which condition not, and the command that writes its program.
+/// Writes the answer's second part: how to fire, when not to, and the command that writes its program.
 fn how_to(name: &str, spec: &RingSpec, how: Option<&How>, rooms: &Result<RoomsAnswer, String>) -> String {
     let (Some(how), Ok(answer)) = (how, rooms) else { return String::new() };
     let list = |sensors: &[u8]| sensors.iter().map(|x| (x + 1).to_string()).collect::<Vec<_>>().join(", ");
@@ -310,7 +310,7 @@ fn how_to(name: &str, spec: &RingSpec, how: Option<&How>, rooms: &Result<RoomsAn
     format!("{text}\n{elsewhere}\nTo get it: {get}\n")
 }
 
-/// The answer's end: what is not printed, and how to get that.
+/// Writes the answer's end: what was left out, and the options that print it.
 fn more(design: &RingDesign, all: bool) -> String {
     let period = design.schedule.period();
     let proven = if design.found.proven { ", proven" } else { "" };
@@ -318,7 +318,7 @@ fn more(design: &RingDesign, all: bool) -> String {
     format!("--proof: the shortest period of two phases ({period}{proven}) and its schedule{all}\n")
 }
 
-/// The way whose settings a flow ring fires by; none for a table.
+/// Returns the settings of a flow ring's way; `None` for a table.
 fn settings(judged: &RoomWay) -> Option<Way> {
     Way::of(judged).filter(|&way| way != Way::TwoPhases)
 }

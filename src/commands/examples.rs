@@ -1,4 +1,4 @@
-//! `eeruf examples`: the example files, written where they are wanted.
+//! `eeruf examples`: writes the example files.
 
 use std::path::PathBuf;
 

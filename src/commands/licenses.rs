@@ -1,10 +1,10 @@
-//! `eeruf licenses`: under which terms the program may be used, and what others wrote of it.
+//! `eeruf licenses`: the licences of the program and of its dependencies.
 
 use super::Answer;
 use crate::console::print_line;
 use crate::files::error::InputError;
 
-/// In the order in which they are printed.
+/// The texts in the order of printing.
 const TEXTS: [(&str, &str); 4] = [
     ("eeruf: MIT or Apache-2.0, at your option", include_str!("../../LICENSE-MIT")),
     ("Or Apache-2.0", include_str!("../../LICENSE-APACHE")),

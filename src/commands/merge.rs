@@ -1,4 +1,4 @@
-//! `eeruf merge`: the parts of an experiment as the whole.
+//! `eeruf merge`: joins the parts of an experiment.
 
 use std::collections::BTreeMap;
 use std::fs;

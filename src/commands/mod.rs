@@ -49,7 +49,7 @@ pub(crate) const STUDY: &str = help!("study scenes/alcove.toml --method sequenti
 const CODES: &str = "Exit codes: 0 fine; 1 the answer is no; 2 bad input; 3 not decided; 74 the output cannot be \
                      written; 130 stopped by Ctrl-C";
 
-/// The command line: what the authors measure with is below `lab`, and by its old names hidden.
+/// Builds the command line. The authors' own commands are under `lab`, and hidden under their old names.
 pub(crate) fn program() -> clap::Command {
     let is_old = |name: &str| LabVerb::has_subcommand(name);
     Cli::command().mut_subcommands(|below| if is_old(below.get_name()) { below.hide(true) } else { below })
@@ -109,13 +109,13 @@ impl OutputArgs {
 pub(crate) enum Answer {
     /// Exit code 0.
     Yes,
-    /// Not verified, or infeasible: exit code 1.
+    /// The schedule is not verified, or the needs are infeasible: exit code 1.
     No,
-    /// Budget or time ended the search before its answer: exit code 3.
+    /// Budget or time ended the search before an answer: exit code 3.
     NotDecided,
 }
 
-/// Prints what was found: as one JSON object, or as a text for people.
+/// Prints a result as one JSON object, or as text for people.
 fn show<T: Serialize>(
     as_json: bool,
     json: impl FnOnce() -> T,
@@ -273,7 +273,7 @@ mod tests {
         "HEIGHT",
     ];
 
-    /// Calls with every command without commands below it, and its path.
+    /// Calls a function with every command that has no subcommands, and its path.
     fn each_leaf(command: &Command, path: &str, see: &mut dyn FnMut(&Command, &str)) {
         if command.get_subcommands().next().is_none() {
             see(command, path);
@@ -283,7 +283,7 @@ mod tests {
         }
     }
 
-    /// The faults of an option's help.
+    /// Lists the faults of an option's help.
     fn faults(command: &Command, arg: &Arg) -> Vec<&'static str> {
         let help = arg.get_long_help().or(arg.get_help()).map(ToString::to_string).unwrap_or_default();
         let kind = arg.get_value_names().map_or("", |names| names[0].as_str());

@@ -52,7 +52,7 @@ impl ValueEnum for Named {
     }
 }
 
-/// Writes the program, and says what it is and what to do with it.
+/// Writes the program, and prints what it is and what to do next.
 pub(crate) fn run(
     args: &ProgramArgs,
     (file, language): (&Path, Language),
@@ -92,7 +92,7 @@ pub(crate) fn run(
     Ok(Answer::Yes)
 }
 
-/// The folder's name as a sketch and a crate may have it.
+/// Returns the folder's name in a form allowed for a sketch and a crate.
 fn plain(folder: &Path) -> String {
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
     let name: String = name.chars().map(|c| if c.is_ascii_alphanumeric() || c == '-' { c } else { '_' }).collect();

@@ -1,4 +1,4 @@
-//! `eeruf lab reality`: how far the simulator is from a real ring's log.
+//! `eeruf lab reality`: compares the simulator with a real ring's log.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -36,9 +36,9 @@ pub(crate) struct Args {
     json: bool,
 }
 
-/// Beyond that an echo is another object's than the median's: a choice, as in docs/log/arduino.md.
+/// Distance from the median beyond which an echo is another object's: a choice, as in docs/log/arduino.md.
 const OFF_MM: f64 = 50.0;
-/// A sensor is like its log within that share of firings with an echo.
+/// Largest difference in the share of firings with an echo for a sensor to count as like its log.
 const LIKE: f64 = 0.1;
 const MOST_PERIODS: f64 = 1e6;
 
@@ -48,14 +48,14 @@ struct Figures {
     firings: usize,
     /// Share of the firings with an echo.
     echoes: f64,
-    /// The median of the distances; none without an echo.
+    /// The median of the distances; `None` without an echo.
     median_mm: Option<f64>,
-    /// Share of the echoes that are farther from it than 5 cm.
+    /// Share of the echoes that are more than 5 cm from it.
     off: f64,
 }
 
 impl Figures {
-    /// Figures of each firing's distance, if it had an echo.
+    /// Computes the figures from each firing's distance, if it had an echo.
     fn of(firings: impl Iterator<Item = Option<f64>>) -> Self {
         let all: Vec<_> = firings.collect();
         let mut mm: Vec<f64> = all.iter().copied().flatten().collect();
@@ -113,7 +113,7 @@ impl Reality {
     }
 }
 
-/// The firings of a log; of one that names ways, those of this method.
+/// Returns the firings of a log; if the log names ways of firing, those of this method.
 fn firings(file: &Path, method: Method) -> Result<FiringLog, InputError> {
     let text = fs::read_to_string(file).map_err(|error| FileError::reading(file, &error))?;
     let mut lines = text.lines().map(|line| line.trim().split(',').collect::<Vec<_>>());

@@ -1,4 +1,4 @@
-//! `eeruf replay`: what the filter makes of recorded readings.
+//! `eeruf replay`: runs the filter over recorded readings.
 
 use std::path::{Path, PathBuf};
 
@@ -57,7 +57,7 @@ pub(crate) struct Args {
 }
 
 impl Args {
-    /// The questions of `eeruf logs`.
+    /// Makes the arguments that `eeruf logs` passes on.
     pub(super) fn of(file: &Path, t_delta_us: u32, log: LogArgs, out: Option<PathBuf>, json: bool) -> Self {
         let file = file.to_owned();
         Self { file, t_delta_us, ring: None, consecutive: 2, log, out, svg: None, json }
@@ -152,7 +152,7 @@ fn print(args: &Args, report: &Report, counted: &[Counted], kinds: Vec<Vec<Readi
     Ok(())
 }
 
-/// One line of guesses; `eeruf logs` has them in full.
+/// Writes one line of guesses; `eeruf logs` prints them in full.
 fn guesses(report: &Report) -> String {
     if report.guesses.is_empty() {
         return String::new();

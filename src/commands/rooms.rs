@@ -51,7 +51,7 @@ fn percent(text: &str) -> Result<f64, String> {
 }
 
 impl RoomArgs {
-    /// Returns the first option that was given, for a file that is no ring.
+    /// Returns the first of these options that was given, to refuse it for a file that is no ring.
     pub(crate) fn given(&self) -> Option<&'static str> {
         let given = [
             ("--rooms", !self.rooms.is_empty()),
@@ -173,7 +173,7 @@ fn goes_on(watch: &Mutex<&mut Watch>, share: f64) -> bool {
     watch.go_on(|| format!("rooms: {:.0} % done", 100.0 * share))
 }
 
-/// The scenes and maps that were named, as rooms for a robot of this radius.
+/// Reads the named scenes and maps as rooms for a robot of this radius.
 fn own_rooms(paths: &[PathBuf], numbers: Range<u64>, radius_m: f64) -> Result<Vec<RoomGroup>, InputError> {
     let mut files = vec![];
     for path in paths {
@@ -208,7 +208,7 @@ fn is_map(file: &Path) -> bool {
     Kind::of_file(file) == Some(Kind::Map)
 }
 
-/// A file's name in tables.
+/// Returns a file's name in tables.
 fn name_of(file: &Path) -> String {
     file.file_stem().map_or_else(|| file.display().to_string(), |stem| stem.to_string_lossy().into_owned())
 }

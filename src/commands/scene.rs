@@ -1,4 +1,4 @@
-//! `eeruf scene`: a scene file out of a map that people have.
+//! `eeruf scene`: makes a scene file from a map.
 
 use std::path::PathBuf;
 

@@ -1,4 +1,4 @@
-//! `eeruf search`: the paper's problem, waits on a grid.
+//! `eeruf search`: the paper's problem of waits on a grid.
 
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -48,9 +48,9 @@ pub(crate) struct Args {
     json: bool,
 }
 
-/// Number of nodes it may cost to find out which requirement cannot be met.
+/// Search budget, in nodes, to find out which requirement cannot be met.
 const REASON_BUDGET: u64 = 2_000_000;
-/// After how many nodes each it is looked whether to go on.
+/// Number of nodes between two checks for Ctrl-C and time.
 const WATCHED_EVERY: u32 = 1 << 12;
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -80,7 +80,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     Ok(answer)
 }
 
-/// The answer of a search that has found a table or not, and has ended before its proof or not.
+/// Returns the answer of a search, by whether it found a table and completed its proof.
 fn answer(found: bool, proven: bool) -> Answer {
     match (found, proven) {
         (true, _) => Answer::Yes,
@@ -100,7 +100,7 @@ fn why_none(search: &WaitSearch, memory: &mut [u32], watch: &mut Watch) -> Resul
     Ok(format!("{}\n", within(REASON_BUDGET, watch, |budget| search.why_none(memory, budget))?))
 }
 
-/// Counts the tables, and says how many.
+/// Counts the tables and prints the number.
 fn count(args: &Args, spec: &WaitSpec, watch: &mut Watch) -> Result<(Answer, String), SearchError> {
     let search = WaitSearch::new(&spec.problem())?;
     let began = Instant::now();
@@ -151,7 +151,7 @@ fn find(args: &Args, spec: &WaitSpec, best: Option<Best>, watch: &mut Watch) -> 
     Ok((answer, text))
 }
 
-/// Walks the Pareto front of interval and `t_delta`, and prints its tables.
+/// Follows the Pareto front of interval and `t_delta`, and prints its tables.
 fn front(args: &Args, spec: &WaitSpec, watch: &mut Watch) -> Result<(Answer, String), SearchError> {
     let search = WaitSearch::new(&spec.problem())?;
     let began = Instant::now();

@@ -88,7 +88,7 @@ fn every_method() -> String {
 }
 
 impl Args {
-    /// Returns the first option that was given and means nothing for a ring.
+    /// Returns the first of these options that was given, to refuse it for a ring.
     fn of_scenes(&self) -> Option<&'static str> {
         let given = [
             ("--periods", self.periods.is_some()),
@@ -105,7 +105,7 @@ impl Args {
 }
 
 const PERIODS: u32 = 2000;
-/// Number of periods where something moves: there paths are found again for every firing.
+/// Number of periods in moving scenes, whose paths are found again for every firing.
 const PERIODS_IF_MOVING: u32 = 250;
 /// Budget of nodes for the search for `eeruf_best`.
 const BUDGET: u64 = 20_000;
@@ -170,11 +170,11 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     Ok(Answer::Yes)
 }
 
-/// Trials of each way, for the choice of votes and as many to report; and where something moves.
+/// Trials of each way to choose votes, and as many to report; the second number is for moving scenes.
 const TRIALS: u64 = 60;
 const TRIALS_IF_MOVING: u64 = 20;
 
-/// The first answer: how soon the first robot sees what appears, and how often it stops for nothing.
+/// Writes the first answer: how soon the first robot sees what appears, and how often it stops for nothing.
 fn three_ways(args: &Args, world: &World, watch: &mut Watch) -> Result<String, InputError> {
     let methods = [Method::Blocking, Method::Sequential, Method::InTurn].map(|method| (Family::OneByOne, method));
     let methods = [&methods[..], &[(Family::Flow, Method::Flow)]].concat();

@@ -1,4 +1,4 @@
-//! `eeruf verify`: holds a schedule file against the conditions of the paper.
+//! `eeruf verify`: checks a schedule file against the paper's conditions.
 
 use std::path::{Path, PathBuf};
 
@@ -81,7 +81,7 @@ fn layout(text: &str) -> Result<LayoutKey, String> {
 }
 
 impl Args {
-    /// The requirements that the options state.
+    /// Returns the requirements given by options.
     fn requirements<'a>(&self, layout: Layout<'a>, criterion: Criterion) -> Requirements<'a> {
         Requirements {
             criterion,
@@ -116,7 +116,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
 #[derive(Clone, Copy, Serialize)]
 struct Known {
     shortest_us: u32,
-    /// Bound of the period by the certificate of the atlas's row.
+    /// Bound of the period, from the certificate of the atlas's row.
     certified_us: u32,
 }
 
@@ -127,7 +127,7 @@ impl Known {
         Some(Self { shortest_us: schedule.period().as_micros(), certified_us })
     }
 
-    /// A line of the report.
+    /// Writes a line of the report.
     fn line(self, period: Micros) -> String {
         let Self { shortest_us, certified_us } = self;
         let is = if shortest_us < period.as_micros() { "possible" } else { "the shortest" };
@@ -140,7 +140,7 @@ impl Known {
     }
 }
 
-/// The report, and the shortest period where the atlas has it.
+/// The report, and the shortest period if the atlas has it.
 #[derive(Serialize)]
 struct Verified {
     #[serde(flatten)]
@@ -149,7 +149,7 @@ struct Verified {
     known: Option<Known>,
 }
 
-/// Prints what was found.
+/// Prints the result.
 fn answer(
     args: &Args,
     schedule: &AnySchedule,

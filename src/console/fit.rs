@@ -3,7 +3,7 @@
 
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 
-/// The least width of a column with its frame; a table with less a column becomes lists.
+/// The least width of a column with its frame; a table with less for a column becomes lists.
 const LEAST_COLUMN: usize = 8;
 
 /// Returns the text with no line longer than `width`.
@@ -57,7 +57,7 @@ fn fit_table(out: &mut String, block: &[&str], width: usize) {
     table.lines().for_each(|line| push_line(out, line.trim_end()));
 }
 
-/// Wraps one line; what follows the first is indented by two more.
+/// Wraps one line; further lines are indented by two more.
 pub(super) fn wrap_line(out: &mut String, line: &str, width: usize) {
     if length(line) <= width {
         return push_line(out, line);
@@ -87,7 +87,7 @@ fn length(text: &str) -> usize {
     text.chars().count()
 }
 
-/// Parts a text after at most `room` characters: at the last space, or within a word that is longer.
+/// Splits a text after at most `room` characters: at the last space, or within a longer word.
 fn cut(text: &str, room: usize) -> (&str, &str) {
     let room = room.max(1);
     let Some((end, next)) = text.char_indices().nth(room) else { return (text, "") };

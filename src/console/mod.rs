@@ -1,7 +1,7 @@
 //! The terminal: the only writer of standard output, warnings and errors on standard error, and how wide and colourful
 //! lines are.
 //!
-//! Depends on no other room of the program.
+//! Depends on no other part of the program.
 
 mod fit;
 mod out;

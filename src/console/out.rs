@@ -9,7 +9,7 @@ use super::settings::settings;
 /// A failure to write to standard output.
 #[derive(Debug)]
 pub(crate) enum OutputError {
-    /// The reader of the pipe has gone: it has what it wanted.
+    /// The reader of the pipe has closed it.
     Closed,
     /// Any other failure, such as a full disk.
     Failed(io::Error),
@@ -30,7 +30,7 @@ impl fmt::Display for OutputError {
     }
 }
 
-/// Writes a text to standard output as it is, and flushes.
+/// Writes a text to standard output unchanged, and flushes.
 ///
 /// # Errors
 /// The output is closed, or cannot take the text.

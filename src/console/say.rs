@@ -15,7 +15,7 @@ pub(crate) fn error(message: impl fmt::Display) {
     say("eeruf: ", RED, &message);
 }
 
-/// Prints what was done beside the answer, such as a file that was written.
+/// Prints what was done besides the answer, such as a file that was written.
 pub(crate) fn note(message: impl fmt::Display) {
     say("", "", &message);
 }

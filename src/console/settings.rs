@@ -1,15 +1,15 @@
-//! The options of output, and the width of the terminal.
+//! The output options, and the width of the terminal.
 
 use std::cell::Cell;
 use std::io::IsTerminal;
 
 use ::console::Term;
 
-/// The least width that lines are fitted to.
+/// The least width to which lines are fitted.
 const MIN_WIDTH: usize = 20;
 
 thread_local! {
-    /// The options of the program that this thread runs: the Python package may run several.
+    /// The output options of the program on this thread: the Python package may run several.
     static SETTINGS: Cell<Settings> = Cell::default();
 }
 
@@ -20,11 +20,11 @@ pub(crate) struct Settings {
     pub(crate) quiet: bool,
     /// A warning is an error.
     pub(crate) deny_warnings: bool,
-    /// Lines as long as they are.
+    /// Lines of any length.
     pub(crate) wide: bool,
     /// Errors quote lines of files; on a terminal they do anyway.
     pub(crate) explain: bool,
-    /// Colours always or never; by default on a terminal, unless `NO_COLOR` is set.
+    /// Colours always or never; by default on a terminal unless `NO_COLOR` is set.
     pub(crate) colour: Option<bool>,
 }
 
@@ -60,12 +60,12 @@ impl Settings {
     }
 }
 
-/// Sets the options of what this thread prints from here on.
+/// Sets the options of this thread's output from here on.
 pub(crate) fn set(settings: Settings) {
     SETTINGS.set(settings);
 }
 
-/// Returns the options of what this thread prints.
+/// Returns the options of this thread's output.
 pub(crate) fn settings() -> Settings {
     SETTINGS.get()
 }

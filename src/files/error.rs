@@ -12,7 +12,7 @@ const BAD_INPUT: u8 = 2;
 /// The exit code of a failure to write, `EX_IOERR` of sysexits.h.
 const CANNOT_WRITE: u8 = 74;
 
-/// A failure of a command: the report that all of eeruf has, and the exit code.
+/// A failure of a command: the error that all of eeruf uses, and the exit code.
 #[derive(Debug)]
 pub(crate) struct InputError {
     report: FileError,
@@ -21,7 +21,7 @@ pub(crate) struct InputError {
 }
 
 impl InputError {
-    /// An error in a file, an option, or whatever else the user named.
+    /// Makes an error in a file, an option, or anything else named by the user.
     pub(crate) fn new(of: impl AsRef<Path>, message: impl fmt::Display) -> Self {
         FileError::new(of.as_ref(), message).into()
     }
@@ -31,7 +31,7 @@ impl InputError {
         self.code
     }
 
-    /// The line of the file that the error is about, with the word that it begins with marked.
+    /// Returns the line of the file with the error, with its first word marked.
     pub(crate) fn quoted(&self) -> Option<String> {
         let number = self.report.line()?;
         let text = std::fs::read_to_string(self.report.file()).ok()?;

@@ -11,7 +11,7 @@ use super::write::write;
 /// The name of the simulation's clock.
 pub(crate) const CLOCK: &str = "simulation, true time";
 
-/// One of the readings of a simulation, as a log of firings has it.
+/// Converts a simulated reading to a firing of a log.
 pub(crate) fn firing(readings: &Readings, k: usize) -> Firing {
     Firing {
         sensor: readings.sensor[k],
@@ -24,10 +24,10 @@ pub(crate) fn firing(readings: &Readings, k: usize) -> Firing {
     }
 }
 
-/// A robot that is slower stands, and its log says nothing of motion.
+/// A slower robot counts as standing, and its log says nothing of motion.
 const LEAST_US_MS: f32 = 1e-3;
 
-/// Every firing of the first robot, and how fast its readings change if it moves.
+/// Returns every firing of the first robot, with the rate of change of its readings if it moves.
 pub fn firing_log(readings: &Readings) -> FiringLog {
     let of_first: Vec<_> = (0..readings.len()).filter(|&k| readings.robot[k] == 0).collect();
     let motion: Vec<_> = of_first.iter().map(|&k| g_us_ms(readings, k)).collect();
@@ -37,8 +37,8 @@ pub fn firing_log(readings: &Readings) -> FiringLog {
     FiringLog::new(CLOCK, firings.collect())
 }
 
-/// The rate at which readings change with the sensor's motion over the last 20 ms or more before this one, or after it
-/// for its first one, in microseconds for each millisecond.
+/// Returns the rate at which the sensor's motion changes readings, over 20 ms or more before this one, or after it for
+/// the first one, in microseconds for each millisecond.
 fn g_us_ms(readings: &Readings, k: usize) -> f32 {
     const WITHIN_S: f64 = 0.02;
     /// Arm at which a wall moves when the robot turns, in metres, and the speed of sound in m/s, as rings take them.
@@ -52,7 +52,7 @@ fn g_us_ms(readings: &Readings, k: usize) -> f32 {
     (2e3 * moved_m / SOUND_M_S / (fired_s[k] - fired_s[j]).abs()) as f32
 }
 
-/// Writes every firing of the first robot, as MCAP if the file's name ends so, else as CSV.
+/// Writes every firing of the first robot, as MCAP if the file's name ends in .mcap, else as CSV.
 pub(crate) fn write_firings(file: &Path, readings: &Readings) -> Result<(), InputError> {
     let log = firing_log(readings);
     if file.extension().is_some_and(|ending| ending == "mcap") {
@@ -65,7 +65,7 @@ pub(crate) fn write_firings(file: &Path, readings: &Readings) -> Result<(), Inpu
     write(file, csv(&log, file)?)
 }
 
-/// A log as CSV; `file` stands in errors.
+/// Formats a log as CSV; `file` is the name used in errors.
 pub(crate) fn csv(log: &FiringLog, file: &Path) -> Result<Vec<u8>, InputError> {
     let mut text = Vec::new();
     log.write(&mut text).map_err(|error| InputError::new(file, error))?;

@@ -1,4 +1,4 @@
-//! A flow ring's settings, by the file of its ring or its scene.
+//! A flow ring's settings, from its ring file or scene.
 
 use std::path::Path;
 
@@ -13,7 +13,7 @@ use super::error::InputError;
 use super::ring::read_ring;
 use super::toml::read_world;
 
-/// The settings by which the ring of a file judges: a ring file's, or the first robot's of a scene.
+/// Reads the settings by which a ring judges: a ring file's, or those of a scene's first robot.
 pub(crate) fn read_flow(file: &Path) -> Result<FlowSettings, InputError> {
     if Kind::of_file(file) != Some(Kind::Scene) {
         let spec = read_ring(file)?;

@@ -28,7 +28,7 @@ pub(crate) fn read_firings(file: &Path) -> Result<FiringLog, InputError> {
     Ok(log)
 }
 
-/// Prints a warning, or returns it as an error where warnings are denied.
+/// Prints a warning, or returns it as an error if warnings are denied.
 pub(crate) fn warn(warning: InputError) -> Result<(), InputError> {
     if console::settings().deny_warnings {
         return Err(warning);
@@ -37,7 +37,7 @@ pub(crate) fn warn(warning: InputError) -> Result<(), InputError> {
     Ok(())
 }
 
-/// Warns about implausible values of options, which mean what the keys of their names mean in files.
+/// Warns about implausible values of options, which mean the same as keys of these names in files.
 ///
 /// # Errors
 /// The first of them, if warnings are denied.

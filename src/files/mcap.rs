@@ -15,14 +15,14 @@ use eeruf_sim::{HeardPath, Moment, Point, Pose, Readings, Scene, SensorId, Simul
 use super::error::InputError;
 use super::firings::{CLOCK, firing};
 
-/// The simulation begins at 2000-01-01: a stamp of zero means that there is none.
+/// The simulation begins at 2000-01-01: a stamp of zero would mean no time.
 const START_NS: u64 = 946_684_800_000_000_000;
-/// From pose to pose.
+/// Seconds between two poses.
 const POSES_S: f64 = 0.05;
 /// Time for which a path is shown.
 const SHOWN_NS: u64 = 120_000_000;
 
-/// Time for which scenes that were exchanged are kept: longer than sound is on its way.
+/// Time for which replaced scenes are kept: longer than sound travels.
 const KEPT_S: f64 = 10.0;
 
 /// A world and where its robots are.
@@ -35,18 +35,18 @@ pub(crate) struct Stage<'a> {
 }
 
 impl<'a> Stage<'a> {
-    /// Robots move as the world says.
+    /// Makes a stage whose robots move as the world says.
     pub(crate) fn of(world: &'a World) -> Self {
         Self { world, changes: &[], moment: Box::new(|robot, time_s| planned(world, robot, time_s)) }
     }
 
-    /// The first robot was driven; its places are in order of time.
+    /// Makes a stage whose first robot was driven; its places are in order of time.
     pub(crate) fn driven(world: &'a World, track: &'a [TrackPoint]) -> Self {
         let moment = |robot, time_s| if robot == 0 { on_track(track, time_s) } else { planned(world, robot, time_s) };
         Self { world, changes: &[], moment: Box::new(moment) }
     }
 
-    /// Robots move as they are steered, among scenes that change.
+    /// Makes a stage whose robots are steered, among scenes that change.
     fn under_way(simulation: &'a Simulation, changes: &'a [(Arc<World>, f64)]) -> Self {
         // What is computed of times may be off by a rounding.
         let known = |time_s: f64| time_s.clamp(0.0, simulation.time_s());
@@ -54,7 +54,7 @@ impl<'a> Stage<'a> {
         Self { world: simulation.world(), changes, moment: Box::new(moment) }
     }
 
-    /// The scene in which sound travels that was sent at this time.
+    /// Returns the scene for sound sent at this time.
     fn scene(&self, sent_s: f64) -> &Scene {
         let changed = self.changes.iter().rfind(|(_, since_s)| *since_s <= sent_s);
         changed.or_else(|| self.changes.first()).map_or(self.world, |(world, _)| &**world).scene()
@@ -76,7 +76,7 @@ fn planned(world: &World, robot: usize, time_s: f64) -> Option<Moment> {
     Some(robot.motion.at(&robot.pose, time_s))
 }
 
-/// Between two places, or at the last one.
+/// Returns the place between two given ones, or the last one.
 fn on_track(track: &[TrackPoint], time_s: f64) -> Option<Moment> {
     let after = track.partition_point(|place| place.time_s <= time_s);
     let (before, after) = (track.get(after.saturating_sub(1))?, track.get(after));
@@ -136,9 +136,9 @@ pub(crate) fn write_mcap(file: &Path, stage: &Stage<'_>, runs: &[Readings]) -> R
 /// ```
 pub struct Recording {
     out: McapWriter,
-    /// Time when poses are written next, counted in steps.
+    /// Time of the next poses, counted in steps.
     next: u64,
-    /// The scenes of late, each in its world, and since when in seconds.
+    /// The latest scenes, each in its world, and the time from which each holds, in seconds.
     scenes: Vec<(Arc<World>, f64)>,
 }
 
@@ -178,7 +178,7 @@ impl Recording {
         Ok(())
     }
 
-    /// Writes what is left, and the index. A recording that is dropped does so too, but cannot say if it fails.
+    /// Writes the rest and the index. A recording that is dropped does so too, but cannot say if it fails.
     ///
     /// # Errors
     /// If the file cannot be written.

@@ -11,7 +11,7 @@ use serde::de::DeserializeOwned;
 use super::error::InputError;
 use super::implausible::{warn, warn_of};
 
-/// Reads a TOML file of this kind, builds what it says, and warns about implausible values in it.
+/// Reads a TOML file of this kind, builds its meaning, and warns about implausible values in it.
 pub(crate) fn read_toml<T: DeserializeOwned, B>(
     file: &Path,
     kind: Kind,
@@ -55,7 +55,7 @@ pub(crate) fn read_world(file: &Path) -> Result<World, InputError> {
     Ok(world)
 }
 
-/// Two signs in a scene that its numbers are in other units than its keys say.
+/// Finds two signs that a scene's numbers are in units other than its keys say.
 fn unlikely(world: &World) -> Option<String> {
     let number = |us: Micros| f64::from(us.as_micros());
     for robot in world.robots() {
@@ -78,7 +78,7 @@ fn unlikely(world: &World) -> Option<String> {
     })
 }
 
-/// Returns true if no robot that stands has a wall or a pole within its sensors' range.
+/// Returns true if no standing robot has a wall or a pole within its sensors' range.
 fn is_silent(world: &World) -> bool {
     world.robots().iter().filter(|robot| matches!(robot.motion, Motion::Still)).all(|robot| {
         let reach_m = robot.transducers().map(|transducer| transducer.max_range_m).fold(0.0, f64::max);

@@ -1,4 +1,4 @@
-//! Readings with what caused them, as CSV: a log of firings that `diagnose` reads, with the ground truth beside it.
+//! Readings with their causes, as CSV: a log of firings that `diagnose` reads, with the ground truth beside it.
 
 use std::fmt::Write as _;
 
@@ -40,7 +40,7 @@ fn cause(cause: Cause) -> &'static str {
     }
 }
 
-/// Where a robot was.
+/// Writes the places of a robot as CSV.
 pub(crate) fn track_csv(track: &[TrackPoint]) -> String {
     let mut text = "time_s,x_m,y_m,heading_rad,speed_m_s\n".to_owned();
     for TrackPoint { time_s, x_m, y_m, heading_rad, speed_m_s } in track {

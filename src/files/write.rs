@@ -1,4 +1,4 @@
-//! Writing files and folders that the user asked for, which is checked before the work begins.
+//! Writing files and folders for the user; paths are checked before the work begins.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -9,12 +9,12 @@ use eeruf_files::FileError;
 use super::error::InputError;
 use crate::commands::arguments::is_picture;
 
-/// The options that name what is read, and those that name what is written.
+/// The options that name input files, and those that name output files.
 const READ: [&str; 2] = ["file", "simulate"];
 const WRITTEN: [&str; 6] = ["out", "log", "mcap", "svg", "png", "certificate"];
 const PICTURES: [&str; 2] = ["svg", "png"];
 
-/// Refuses a file to write that is one of those read, that is a folder, or whose folder does not exist.
+/// Refuses an output file that is also an input, that is a folder, or whose folder does not exist.
 pub(crate) fn check_outputs(matches: &ArgMatches) -> Result<(), InputError> {
     let Some((verb, below)) = matches.subcommand() else { return Ok(()) };
     let named = |id: &str| below.try_get_many::<PathBuf>(id).ok().flatten().into_iter().flatten();
@@ -45,12 +45,12 @@ pub(crate) fn check_outputs(matches: &ArgMatches) -> Result<(), InputError> {
     check_outputs(below)
 }
 
-/// Writes a file that the user asked for.
+/// Writes an output file.
 pub(crate) fn write(file: &Path, contents: impl AsRef<[u8]>) -> Result<(), InputError> {
     fs::write(file, contents).map_err(|error| FileError::writing(file, &error).into())
 }
 
-/// Makes a folder that the user asked for, and those around it.
+/// Makes an output folder and its parents.
 pub(crate) fn make_folder(folder: &Path) -> Result<(), InputError> {
     fs::create_dir_all(folder).map_err(|error| FileError::writing(folder, &error).into())
 }

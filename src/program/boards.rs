@@ -1,4 +1,4 @@
-//! Boards, and the pins that modules are wired to where nobody says others.
+//! Boards, and the pins to which modules are wired by default.
 
 use clap::ValueEnum;
 
@@ -17,31 +17,31 @@ pub(crate) enum Board {
     RaspberryPi,
 }
 
-/// The trigger pin and the echo pin of each module: the same where one wire does for both.
+/// The trigger pin and the echo pin of each module; the same pin if one wire serves both.
 pub(crate) struct Wiring {
     pub(crate) triggers: Vec<u8>,
     pub(crate) echoes: Vec<u8>,
 }
 
 const UNO: [u8; 16] = [2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17];
-/// Pins of a Mega whose changes interrupt.
+/// Pins of a Mega whose changes cause interrupts.
 const MEGA_ECHOES: [u8; 24] =
     [10, 11, 12, 13, 50, 51, 52, 53, 62, 63, 64, 65, 66, 67, 68, 69, 14, 15, 2, 3, 18, 19, 20, 21];
 const PICO: [u8; 26] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 26, 27, 28];
-/// Pins that neither begin at a level that the boot needs, nor belong to the flash or the serial line.
+/// Pins that have no special level at boot and do not belong to the flash or the serial line.
 const ESP32_TRIGGERS: [u8; 9] = [4, 13, 16, 17, 18, 19, 21, 22, 23];
 /// Echo pins of an ESP32, of which some can only be inputs.
 const ESP32_ECHOES: [u8; 9] = [25, 26, 27, 32, 33, 34, 35, 36, 39];
-/// After GPIO; the serial line, I2C and the first SPI are left free.
+/// GPIO numbers; the serial line, I2C and the first SPI are left free.
 const PI: [u8; 20] = [4, 5, 6, 12, 13, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 7, 8, 9];
 
 impl Board {
-    /// Returns true if its pins stand no more than 3.3 V.
+    /// Returns true if its pins tolerate no more than 3.3 V.
     pub(crate) const fn has_3v3(self) -> bool {
         !matches!(self, Self::Uno | Self::Mega)
     }
 
-    /// The name that a reader knows.
+    /// Returns the board's usual name.
     pub(crate) const fn title(self) -> &'static str {
         match self {
             Self::Uno => "Arduino Uno",
@@ -52,7 +52,7 @@ impl Board {
         }
     }
 
-    /// An analog pin that no module is wired to, as a sketch has it.
+    /// Returns an analog pin without a module, as a sketch writes it.
     pub(crate) const fn open_pin(self) -> &'static str {
         match self {
             Self::Uno => "A5",
@@ -61,7 +61,7 @@ impl Board {
         }
     }
 
-    /// The serial line to an autopilot, as a sketch has it, and its pins: what it sends, what it receives.
+    /// Returns the serial line to an autopilot, as a sketch writes it, and its pins: sending, receiving.
     pub(crate) const fn line(self) -> (&'static str, [&'static str; 2]) {
         match self {
             Self::Mega => ("Serial2", ["16 (TX2)", "17 (RX2)"]),
@@ -71,7 +71,7 @@ impl Board {
         }
     }
 
-    /// The pins of this many modules, besides the line to an autopilot.
+    /// Returns the pins of this many modules, without those of the line to an autopilot.
     ///
     /// # Errors
     /// The number of modules that it has pins for, in words.
@@ -94,7 +94,7 @@ impl Board {
         Ok(Wiring { triggers, echoes })
     }
 
-    /// The pin as it is printed on the board.
+    /// Returns the pin's name on the board.
     fn name_of(self, pin: u8) -> String {
         match self {
             Self::Uno if pin >= 14 => format!("A{}", pin - 14),
@@ -105,7 +105,7 @@ impl Board {
         }
     }
 
-    /// The wires, line by line.
+    /// Describes the wires, line by line.
     pub(crate) fn in_words(self, Wiring { triggers, echoes }: &Wiring) -> Vec<String> {
         let mut lines = vec![format!(
             "Wires to the pins of this board ({}); for others change the lists of pins below:",

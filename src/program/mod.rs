@@ -30,7 +30,7 @@ pub(crate) enum Language {
 }
 
 impl Language {
-    /// Boards that it is written for, the usual one first; none if any will do.
+    /// Returns the boards for it, the usual one first; none if any will do.
     const fn boards(self) -> &'static [Board] {
         match self {
             Self::Arduino => &[Board::Uno, Board::Mega, Board::Pico, Board::Esp32],
@@ -45,7 +45,7 @@ impl Language {
 #[derive(Debug)]
 pub(crate) struct Program {
     pub(crate) files: Vec<(String, String)>,
-    /// The next thing to do with it, in a sentence.
+    /// The next step for the user, in a sentence.
     pub(crate) next: &'static str,
 }
 
@@ -56,15 +56,15 @@ pub(crate) struct Wanted<'a> {
     pub(crate) design: &'a RingDesign,
     pub(crate) robot: &'a Robot,
     pub(crate) way: Way,
-    /// True if it is to speak MAVLink to an autopilot.
+    /// True if it should send MAVLink to an autopilot.
     pub(crate) mavlink: bool,
-    /// The name of the folder, for those whose main file has its name.
+    /// The name of the folder, for languages whose main file has the same name.
     pub(crate) name: &'a str,
 }
 
 const C_LIBRARY: [(&str, &str); 2] =
     [("eeruf.c", include_str!("../../c/eeruf.c")), ("eeruf.h", include_str!("../../c/eeruf.h"))];
-/// The header that speaks to an autopilot, and the autopilot's parameters.
+/// The header that sends MAVLink, and the autopilot's parameters.
 const MAVLINK: (&str, &str) = ("eeruf_mavlink.h", include_str!("../../c/eeruf_mavlink.h"));
 const ARDUPILOT: (&str, &str) = ("ardupilot.param", include_str!("templates/ardupilot.param"));
 const ARDUINO_LIBRARY: [(&str, &str); 5] = [
@@ -127,7 +127,7 @@ fn chosen(language: Language, board: Option<Board>) -> Result<Option<Board>, Str
     }
 }
 
-/// The times of the ring's modules.
+/// Returns the times of the ring's modules.
 fn pulse_times(spec: &RingSpec) -> Result<PulseTimes, String> {
     let Some(module) = spec.modules.first() else {
         return Err(
@@ -147,7 +147,7 @@ fn pulse_times(spec: &RingSpec) -> Result<PulseTimes, String> {
 }
 
 impl Wanted<'_> {
-    /// The first lines of a program, without comment signs.
+    /// Writes the first lines of a program, without comment signs.
     fn about(&self, flow: Option<&FlowDesign>, wiring: Option<&(Board, Wiring)>) -> Vec<String> {
         let spec = &self.design.spec;
         let modules = spec.modules.first().map_or("", |module| module.name);
@@ -161,7 +161,7 @@ impl Wanted<'_> {
         lines
     }
 
-    /// The table, or the settings of a flow ring.
+    /// Writes the table, or the settings of a flow ring.
     fn source(&self, form: Form, flow: Option<&FlowDesign>) -> String {
         let design = self.design;
         match flow {
@@ -171,7 +171,7 @@ impl Wanted<'_> {
     }
 }
 
-/// The set-up of a flow ring as source text.
+/// Writes the setup of a flow ring as source text.
 pub(crate) fn flow_source(spec: &RingSpec, form: Form, flow: &FlowDesign) -> String {
     let FlowDesign { turns, belief, window, blanking, limits } = flow;
     let uneven = spec.problem().requirements.uneven;
@@ -180,7 +180,7 @@ pub(crate) fn flow_source(spec: &RingSpec, form: Form, flow: &FlowDesign) -> Str
     form.flow(&Flow { turns, belief, sensors: spec.sensors, window, blanking, limits, shared_lines }, &spec.modules)
 }
 
-/// Lines of no more than 110 characters.
+/// Wraps a text into lines of no more than 110 characters.
 pub(crate) fn wrapped(text: &str) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in text.split(' ') {
@@ -193,12 +193,12 @@ pub(crate) fn wrapped(text: &str) -> Vec<String> {
     lines
 }
 
-/// Comments, each line after a sign.
+/// Writes comments: each line after a sign.
 fn comments(lines: &[String], sign: &str) -> String {
     lines.iter().map(|line| format!("{sign} {line}").trim_end().to_owned() + "\n").collect()
 }
 
-/// A template with its placeholders, as `@sensors@`, filled in.
+/// Fills in the placeholders of a template, such as `@sensors@`.
 fn filled(template: &str, values: &[(&str, &str)]) -> String {
     values.iter().fold(template.to_owned(), |text, (name, value)| text.replace(&format!("@{name}@"), value))
 }
@@ -207,7 +207,7 @@ fn list(pins: &[u8]) -> String {
     pins.iter().map(u8::to_string).collect::<Vec<_>>().join(", ")
 }
 
-/// The first lines of a program that prints.
+/// Writes the first lines of a program that prints.
 fn printing(about: &[String], has_dice: bool) -> Vec<String> {
     let seed = if has_dice { "the seed of the robot's dice, then " } else { "" };
     let prints = format!(
@@ -217,7 +217,7 @@ fn printing(about: &[String], has_dice: bool) -> Vec<String> {
     [about, &[String::new()], &wrapped(&prints)].concat()
 }
 
-/// The first lines of a program that speaks to an autopilot.
+/// Writes the first lines of a program that sends MAVLink to an autopilot.
 fn speaking(about: &[String], board: Board, sends: &str, receives: &str) -> Vec<String> {
     let level = if board.has_3v3() { "" } else { " by 1 kOhm, with 2 kOhm from there to ground: it sends 5 V" };
     let line = format!(
@@ -228,14 +228,14 @@ fn speaking(about: &[String], board: Board, sends: &str, receives: &str) -> Vec<
     [about, &[String::new()], &wrapped(&line)].concat()
 }
 
-/// The lines of a template that a ring by flow or by a table has, and one that speaks to an autopilot or prints.
+/// Selects the lines of a template: for flow or a table, and for MAVLink or printing.
 fn lines_of(template: &str, flows: bool, mavlink: bool) -> String {
     let others = [if flows { "//@table" } else { "//@flow" }, if mavlink { "//@print" } else { "//@mavlink" }];
     let kept = template.lines().filter(|line| !others.iter().any(|other| line.contains(other)));
     kept.map(|line| line.split("  //@").next().unwrap_or_default().to_owned() + "\n").collect()
 }
 
-/// The directions of sensors for an autopilot, and what they see, by their names in templates.
+/// Returns the directions and ranges of sensors for an autopilot, by their names in templates.
 fn directions(wanted: &Wanted<'_>) -> [(&'static str, String); 4] {
     // Of a beam of 30 degrees, as the ROS 2 node takes it.
     const HALF_VIEW_DEG: u32 = 15;

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use eeruf_sim::Bounce;
 
-/// The bounces of a path, emitter to receiver; walls and poles from 0, as in files.
+/// Describes the bounces of a path, emitter to receiver; walls and poles from 0, as in files.
 pub(crate) fn by_way_of(bounces: &[Bounce]) -> String {
     if bounces.is_empty() {
         return "straight".to_owned();
@@ -26,7 +26,7 @@ pub(crate) fn by_way_of(bounces: &[Bounce]) -> String {
     text
 }
 
-/// The bounces of a path as numbers, see [`Bounce::number`].
+/// Returns the bounces of a path as numbers, see [`Bounce::number`].
 pub(crate) fn wall_numbers(bounces: &[Bounce]) -> Vec<i64> {
     bounces.iter().map(|bounce| bounce.number()).collect()
 }

@@ -1,4 +1,4 @@
-//! Ways of firing by the one cost, as text.
+//! Ways of firing compared by their cost, as text.
 
 use std::fmt::Write as _;
 
@@ -7,7 +7,7 @@ use eeruf_sim::experiments::measure::Estimate;
 
 use super::table::{markdown, or_dash};
 
-/// The table of costs with the best way under each condition, and what is recommended.
+/// Formats the table of costs, the best way under each condition, and the recommendation.
 pub(crate) fn describe(answer: &CostAnswer) -> String {
     let CostAnswer { recommended, draw, speed_m_s, turn_deg_s, kinds, elsewhere, .. } = answer;
     let conditions = kinds.iter().map(|kind| &kind.best).max_by_key(|best| best.len());

@@ -114,7 +114,7 @@ pub(crate) fn describe(name: &str, spec: &RingSpec, design: &RingDesign, seconds
     text
 }
 
-/// The pairs that are no neighbours by their places, as people count sensors.
+/// Lists the pairs that are no neighbours in their places, with sensors counted from 1.
 fn not_neighbours(spec: &RingSpec) -> String {
     const NAMED: usize = 6;
     let pairs = &spec.not_neighbours;
@@ -133,20 +133,20 @@ fn not_neighbours(spec: &RingSpec) -> String {
     )
 }
 
-/// A time that all sensors have, or the shortest and the longest.
+/// Formats a time that all sensors share, or the shortest and the longest.
 fn span(sensors: usize, of: impl Fn(usize) -> Micros) -> String {
     let least = (0..sensors).map(&of).min().unwrap_or_default();
     let most = (0..sensors).map(&of).max().unwrap_or_default();
     if least == most { most.to_string() } else { format!("{least} to {most}") }
 }
 
-/// A time as the change of range that it stands for.
+/// Formats a time as the change of range that it stands for.
 fn as_range(spec: &RingSpec, time: Micros) -> String {
     // c/2 in mm/s times us is 1e-7 cm.
     format!("{:.1} cm", 0.5e-7 * f64::from(spec.c.mm_per_s()) * f64::from(time.as_micros()))
 }
 
-/// Changes by which the designer may get a shorter period.
+/// Lists changes by which the designer may get a shorter period.
 fn ways_to_get_faster(cases: &[WhatIf], period: Micros) -> String {
     let mut table = plain();
     for WhatIf { need, period: with, proven } in cases {
@@ -161,7 +161,7 @@ fn ways_to_get_faster(cases: &[WhatIf], period: Micros) -> String {
     format!("To get faster than {period}, one change at a time:\n{table}")
 }
 
-/// The period to which Table I-d, cut to this many sensors, has to be scaled to meet the same requirements.
+/// Returns the period to which Table I-d, cut to this many sensors, must be scaled to meet the same requirements.
 fn papers_period_us(spec: &RingSpec, requirements: &Requirements<'_>) -> Option<f64> {
     if spec.sensors > TABLE_I_D.sensors() || spec.uneven.is_some() {
         return None;

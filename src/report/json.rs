@@ -2,13 +2,13 @@
 
 use serde::{Serialize, Serializer};
 
-/// Output of `--json`: one object on one line.
+/// Writes the output of `--json`: one object on one line.
 pub(crate) fn to_json(answer: &impl Serialize) -> String {
     // Our own types: named fields, numbers and strings, which always serialise.
     serde_json::to_string(answer).unwrap_or_default()
 }
 
-/// As an object whose keys keep the order in which methods are listed.
+/// Serializes an object whose keys keep the order in which methods are listed.
 pub(crate) fn in_order<S: Serializer, N: Serialize, T: Serialize>(
     entries: &[(N, T)],
     serializer: S,

@@ -16,9 +16,9 @@ pub(crate) struct PathsJson {
     pub(crate) arrival_rad: Vec<f64>,
     /// Relative to 1 m on axis, both sensors' patterns included.
     pub(crate) amplitude: Vec<f64>,
-    /// Above what is just heard.
+    /// Level above the threshold of hearing.
     pub(crate) level_db: Vec<f64>,
-    /// Pole p stands as -1 - p.
+    /// Numbers of walls; pole p is -1 - p.
     pub(crate) walls: Vec<Vec<i64>>,
     #[serde(skip)]
     pub(crate) by_way_of: Vec<String>,

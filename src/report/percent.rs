@@ -4,13 +4,13 @@ use eeruf_sim::experiments::Spread;
 
 use super::table::or_dash;
 
-/// A share in per cent, one digit after the point if it is below ten.
+/// Formats a share in per cent, with one decimal below ten.
 pub(crate) fn percent(share: f64) -> String {
     let digits = usize::from(share < 0.0995);
     format!("{:.digits$}", 100.0 * share)
 }
 
-/// A share in per cent with more digits the smaller it is: one, two or three.
+/// Formats a share in per cent with one, two or three decimals, more for smaller shares.
 pub(crate) fn fine_percent(share: f64) -> String {
     let digits = match share {
         _ if share > 0.0 && share < 0.000_95 => 3,
@@ -20,14 +20,14 @@ pub(crate) fn fine_percent(share: f64) -> String {
     format!("{:.digits$}", 100.0 * share)
 }
 
-/// 10 %, median and 90 % of shares, in per cent.
+/// Formats 10 %, median and 90 % of shares, in per cent.
 pub(crate) fn percents(spread: Option<Spread>) -> String {
     or_dash(spread, |Spread { p10, median, p90, .. }| {
         format!("{} / {} / {}", percent(p10), percent(median), percent(p90))
     })
 }
 
-/// Median and 90 % of shares, in per cent, each with its 95 % interval.
+/// Formats median and 90 % of shares, in per cent, each with its 95 % interval.
 pub(crate) fn percents_95(spread: Option<Spread>) -> String {
     let with = |value, [low, high]: [f64; 2]| {
         format!("{} ({}-{})", fine_percent(value), fine_percent(low), fine_percent(high))
@@ -35,14 +35,14 @@ pub(crate) fn percents_95(spread: Option<Spread>) -> String {
     or_dash(spread, |of| format!("{}, {}", with(of.median, of.median_95), with(of.p90, of.p90_95)))
 }
 
-/// The median alone with its 95 % interval.
+/// Formats the median with its 95 % interval.
 pub(crate) fn median_95(spread: Option<Spread>, digits: usize) -> String {
     or_dash(spread, |Spread { median, median_95: [low, high], .. }| {
         format!("{median:.digits$} ({low:.digits$}-{high:.digits$})")
     })
 }
 
-/// The median alone.
+/// Formats the median.
 pub(crate) fn median(spread: Option<Spread>, digits: usize) -> String {
     or_dash(spread, |spread| format!("{:.digits$}", spread.median))
 }

@@ -1,4 +1,4 @@
-//! Schedules that fit into a period, and the curve of a need, as text and as JSON.
+//! Schedules that fit into a period, and the curve over a need, as text and as JSON.
 
 use eeruf_core::Micros;
 use eeruf_core::search::Found;

@@ -25,7 +25,7 @@ pub(crate) struct Replay {
     /// Topics that were left out, and why.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) skipped: Vec<String>,
-    /// Values that were read and seem wrong.
+    /// Warnings of values that seem wrong.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub(crate) warnings: Vec<String>,
     /// Firing pattern of the sensors.
@@ -47,25 +47,25 @@ pub(crate) struct Counts {
     name: Option<String>,
     accepted: u64,
     rejected: u64,
-    /// Agreed with the one before, but not yet with enough: only where more than two are compared.
+    /// Readings that agreed with the one before, but not yet with enough: only if more than two are compared.
     #[serde(skip_serializing_if = "is_zero")]
     repeated: u64,
     first: u64,
     no_echo: u64,
     clear: u64,
-    /// Nearer than the sensor can measure.
+    /// Readings nearer than the sensor can measure.
     #[serde(skip_serializing_if = "is_zero")]
     too_early: u64,
-    /// No number.
+    /// Readings that are not numbers.
     #[serde(skip_serializing_if = "is_zero")]
     invalid: u64,
     /// Readings whose time is before that of the reading before.
     #[serde(skip_serializing_if = "is_zero")]
     backwards: u64,
-    /// Pauses after which nothing is compared with what came before.
+    /// Pauses; nothing is compared across them.
     #[serde(skip_serializing_if = "is_zero")]
     gaps: u64,
-    /// From the first reading to the latest, where the log says when.
+    /// Time from the first reading to the latest, if the log has times.
     #[serde(skip_serializing_if = "Option::is_none")]
     duration_s: Option<f64>,
 }

@@ -15,10 +15,10 @@ use super::table::markdown;
 #[derive(Serialize)]
 pub(crate) struct FlowReplay {
     sensors: Vec<OfSensor>,
-    /// Readings of which the log says what the ring made, and those that are judged as the ring did.
+    /// Number of readings with a verdict in the log, and of those with the same verdict here.
     compared: usize,
     alike: usize,
-    /// The first that is judged otherwise.
+    /// The first reading with a different verdict.
     #[serde(skip_serializing_if = "Option::is_none")]
     first_unlike: Option<Unlike>,
 }
@@ -83,7 +83,7 @@ impl FlowReplay {
     }
 }
 
-/// The log with what is made of each reading now, and the echo that is believed since.
+/// Returns the log with each reading's new verdict, and the echo believed from then on.
 pub(crate) fn rows(log: &FiringLog, replayed: &[Option<Replayed>]) -> String {
     let mut text = format!("# clock: {}\n{FIRING_COLUMNS},believed_us\n", log.clock);
     for (firing, again) in log.firings.iter().zip(replayed) {

@@ -22,7 +22,7 @@ pub(crate) fn describe_all(judged: &Result<RoomsAnswer, String>) -> String {
     judged.as_ref().map_or_else(|_| String::new(), text)
 }
 
-/// The conditions under which another way is recommended.
+/// Lists the conditions under which another way is recommended.
 pub(crate) fn describe_elsewhere(judged: &Result<RoomsAnswer, String>) -> String {
     let text = |answer| Described { answer, judgement: &answer.judgement }.depends_on(false);
     judged.as_ref().map_or_else(|_| String::new(), text)
@@ -33,7 +33,7 @@ struct Described<'a> {
     judgement: &'a Judgement,
 }
 
-/// The ways that need nothing of ours.
+/// The ways that need no library of ours.
 const PLAIN: [&str; 6] =
     ["sequential", "sequential_votes", "sequential_median", "simultaneous", "far_groups", "arrays"];
 
@@ -78,7 +78,7 @@ impl Described<'_> {
         text
     }
 
-    /// The sentence that answers.
+    /// Writes the sentence that answers.
     fn verdict(&self, name: &str) -> String {
         let judgement = self.judgement;
         let (Some(way), Some(base)) = (judgement.best(), judgement.ways.first()) else {
@@ -162,7 +162,7 @@ impl Described<'_> {
         row
     }
 
-    /// Says what is recommended under other conditions; without `all` only where that is another way.
+    /// Lists recommendations under other conditions; without `all` only those that differ.
     fn depends_on(&self, all: bool) -> String {
         let here = self.judgement;
         let mut text = String::new();
@@ -229,7 +229,7 @@ impl<'a> RoomsOrNot<'a> {
     }
 }
 
-/// A condition in words.
+/// Returns the words for a condition.
 fn condition(condition: Condition) -> &'static str {
     match (condition.other_gain, condition.flat) {
         (false, false) => "the modules' own gain, between floor and ceiling",

@@ -1,8 +1,8 @@
-//! Tables in Markdown and without lines, and the mark for a figure that there is not.
+//! Tables in Markdown and without lines, and the mark for a missing figure.
 
 use comfy_table::{CellAlignment, Table, presets};
 
-/// A table in Markdown: what it is about at the left, numbers at the right.
+/// Formats a table in Markdown: text columns at the left, numbers at the right.
 pub(crate) fn markdown<S: AsRef<str>>(header: &[S], rows: impl IntoIterator<Item = Vec<String>>) -> Table {
     let mut table = Table::new();
     table.load_style(presets::ASCII_MARKDOWN);
@@ -21,7 +21,7 @@ pub(crate) fn plain() -> Table {
     table
 }
 
-/// A figure in words, or a dash where there is none.
+/// Formats a figure, or a dash if there is none.
 pub(crate) fn or_dash<T>(figure: Option<T>, in_words: impl FnOnce(T) -> String) -> String {
     figure.map_or_else(|| "-".to_owned(), in_words)
 }

@@ -7,7 +7,7 @@ use eeruf_sim::experiments::measure::{Cell, Family, Measured, ONE_A_MINUTE, Oper
 
 use super::table::markdown;
 
-/// The robot's need of firings, measured: what `measured` has is reported, at votes that are chosen in `chosen`.
+/// Ways of firing, measured by what a robot needs: `measured` is reported, with the votes chosen on `chosen`.
 pub(crate) struct Three<'a> {
     pub(crate) chosen: &'a Measured,
     pub(crate) measured: &'a Measured,
@@ -17,7 +17,7 @@ pub(crate) struct Three<'a> {
     pub(crate) is_recommended: Option<bool>,
 }
 
-/// A way of firing in words.
+/// Returns the words for a way of firing.
 fn in_words(name: &str, setting: Setting) -> String {
     let way = match name {
         "blocking" if setting == Setting::ALL[0] => "blocking, as sketches fire",
@@ -38,7 +38,7 @@ fn in_words(name: &str, setting: Setting) -> String {
     }
 }
 
-/// A 95th percentile in words, for sentences and tables.
+/// Formats a 95th percentile for sentences and tables.
 fn t95(cell: &Cell) -> String {
     if cell.t95_ms.value.is_finite() { format!("{:.0}", cell.t95_ms.value) } else { "never".to_owned() }
 }
@@ -51,7 +51,7 @@ fn stops(cell: &Cell) -> String {
 }
 
 impl Three<'_> {
-    /// The table, what its columns are, and what to do.
+    /// Writes the table, the meaning of its columns, and the recommendation.
     pub(crate) fn describe(&self) -> String {
         let Self { chosen, measured, other, is_recommended } = *self;
         let (Some(under), Some(chooses)) = (measured.under.first(), chosen.under.first()) else {

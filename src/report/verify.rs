@@ -53,7 +53,7 @@ impl<P> ReportJson<P> {
     }
 }
 
-/// A time as tables have it.
+/// Formats a time for a table.
 pub(super) fn us(time: Micros) -> String {
     format!("{} us", time.as_micros())
 }
@@ -114,7 +114,7 @@ pub(crate) fn describe(
     text
 }
 
-/// The layout asked for first, then the other two common ones for comparison.
+/// Returns the layout asked for, then the other two common ones for comparison.
 fn layouts(asked: Layout<'_>) -> Vec<(String, Layout<'_>)> {
     let label = |layout| match layout {
         Layout::Line(n) => format!("line of {n}"),

@@ -1,4 +1,4 @@
-//! Arguments of both sets, and how both show their progress.
+//! Arguments and progress of both sets.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -64,7 +64,7 @@ fn gain(name: &str) -> Result<GainProfile, String> {
 }
 
 impl Common {
-    /// The arguments that decide what is run, all of them; `seeds` unless another number is asked for.
+    /// Returns all arguments that decide what is run; `seeds` is used unless another number is given.
     pub(super) fn words(&self, seeds: u64) -> Vec<String> {
         let Self { first, physics, height, gain, .. } = self;
         let height = match height {
@@ -104,7 +104,7 @@ pub(crate) fn designing(progress: &Progress) -> String {
     format!("designing eeruf_best, {} nodes", progress.nodes)
 }
 
-/// An experiment has no file; what is wrong with it is said after its name.
+/// Makes an error named after the experiment, since it has no file.
 pub(crate) fn bad(set: &'static str) -> impl Fn(&dyn fmt::Display) -> InputError {
     move |error| InputError::new(set, error)
 }
@@ -118,7 +118,7 @@ pub(crate) fn watched(what: String) -> impl Fn(f64) -> bool + Sync {
     }
 }
 
-/// Asked now and then with the share that is done, 0 to 1.
+/// A function called now and then with the share that is done, 0 to 1.
 pub(crate) type Watched<'a> = &'a (dyn Fn(f64) -> bool + Sync);
 
 /// The number of seeds done, and for each method its runs.

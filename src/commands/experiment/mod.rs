@@ -49,7 +49,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     Ok(Answer::Yes)
 }
 
-/// Prints the whole experiment that a part's arguments ask for, of the runs of all parts.
+/// Prints the whole experiment from the runs of all parts.
 pub(super) fn merged(args: &Args, file: &Path, runs: &shard::Runs) -> Result<(), InputError> {
     match &args.set {
         Set::One(args) => set_one::merged(args, file, runs),

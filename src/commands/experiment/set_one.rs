@@ -66,7 +66,7 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
     print(args, &options, &SetOne::of(&options, runs))
 }
 
-/// Prints the whole of the runs of all parts.
+/// Prints the whole from the runs of all parts.
 pub(super) fn merged(args: &Args, file: &Path, runs: &Runs) -> Result<(), InputError> {
     let options = options(args)?;
     let runs = runs_of(&options.methods, options.seeds, file, runs)?;
@@ -92,7 +92,7 @@ fn options(args: &Args) -> Result<SetOneOptions, InputError> {
     Ok(options)
 }
 
-/// The arguments that decide what is run.
+/// Returns the arguments that decide what is run.
 fn words(args: &Args) -> Vec<String> {
     let mut words = args.common.words(SetOneOptions::default().seeds);
     words.insert(0, "set-one".to_owned());
@@ -172,7 +172,7 @@ const VARIED: [Method; 7] = [
     Method::MultiEcho,
 ];
 
-/// Set I with one setting after the other changed.
+/// Runs Set I with one setting after another changed.
 fn vary(args: &Args, options: &SetOneOptions) -> Result<(), InputError> {
     let methods = if args.methods.is_empty() { Entry::all(VARIED) } else { options.methods.clone() };
     let options = SetOneOptions { methods, steps: 0, ..options.clone() };

@@ -46,7 +46,7 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
     print(args, &SetThree::of(&SetThreeOptions { seeds, ..options }, runs))
 }
 
-/// Prints the whole of the runs of all parts.
+/// Prints the whole from the runs of all parts.
 pub(super) fn merged(args: &Args, file: &Path, runs: &Runs) -> Result<(), InputError> {
     let options = options(args);
     let runs = runs_of(&options.methods, options.seeds, file, runs)?;
@@ -69,7 +69,7 @@ fn options(args: &Args) -> SetThreeOptions {
     options
 }
 
-/// The arguments that decide what is run.
+/// Returns the arguments that decide what is run.
 fn words(args: &Args) -> Vec<String> {
     let mut words = args.common.words(SEEDS);
     words.insert(0, "set-three".to_owned());

@@ -146,7 +146,7 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
     print(args, &each)
 }
 
-/// Prints the whole of the runs of all parts.
+/// Prints the whole from the runs of all parts.
 pub(super) fn merged(args: &Args, file: &Path, runs: &Runs) -> Result<(), InputError> {
     let mut options = options(args)?;
     options.pilots = args.pilots.first().copied().unwrap_or_default();
@@ -181,7 +181,7 @@ fn options(args: &Args) -> Result<SetTwoOptions, InputError> {
     Ok(options)
 }
 
-/// The arguments that decide what is run.
+/// Returns the arguments that decide what is run.
 fn words(args: &Args) -> Vec<String> {
     let mut words = args.common.words(SEEDS);
     words.insert(0, "set-two".to_owned());

@@ -1,4 +1,4 @@
-//! Parts of an experiment, which several processes or machines run, and `eeruf merge` puts together.
+//! Parts of an experiment, run by several processes or machines and joined by `eeruf merge`.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -33,7 +33,7 @@ impl FromStr for Shard {
 }
 
 impl Shard {
-    /// The first seed and the number of seeds of this part of all seeds.
+    /// Returns this part's first seed and number of seeds.
     ///
     /// # Errors
     /// More parts than seeds.

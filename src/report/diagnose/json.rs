@@ -1,4 +1,4 @@
-//! A diagnosis for programs. Sensors count from 0, shares are fractions of 1 with their 95 % intervals.
+//! A diagnosis as JSON. Sensors count from 0, shares are fractions of 1 with their 95 % intervals.
 
 use eeruf_logs::Share;
 use serde_json::{Value, json as object};

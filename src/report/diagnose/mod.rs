@@ -13,7 +13,7 @@ pub(crate) use json::json;
 pub(crate) use picture::who_fools_whom;
 pub(crate) use text::describe;
 
-/// A log and what was found in it.
+/// A log and its diagnosis.
 pub(crate) struct DiagnosisReport<'a> {
     pub(crate) file: &'a Path,
     pub(crate) log: &'a FiringLog,
@@ -41,7 +41,7 @@ impl DiagnosisReport<'_> {
         periods().max().unwrap_or(0) - periods().min().unwrap_or(0) + 1
     }
 
-    /// Rejected readings, if the log says which are, and how many of them are surely another sensor's sound.
+    /// Returns the numbers of rejected readings, if marked in the log, and of those surely another sensor's sound.
     fn rejected(&self) -> Option<(usize, usize)> {
         let firings = || self.log.firings.iter().zip(&self.diagnosis.named);
         firings().any(|(firing, _)| firing.reading.is_some()).then(|| {

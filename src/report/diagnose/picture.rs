@@ -5,7 +5,7 @@ use plotters::style::RGBColor;
 use super::DiagnosisReport;
 use crate::report::draw::Picture;
 
-/// Draws it: who sends to the right, who hears downwards.
+/// Draws the matrix: senders to the right, receivers downwards.
 pub(crate) fn who_fools_whom(found: &DiagnosisReport<'_>) -> Picture {
     const LEFT: f64 = 70.0;
     const TOP: f64 = 96.0;
@@ -45,7 +45,7 @@ pub(crate) fn who_fools_whom(found: &DiagnosisReport<'_>) -> Picture {
     picture
 }
 
-/// From grey, for nothing, to green for own echoes and red for others' sound.
+/// Returns a shade from grey, for nothing, to green for own echoes and red for others' sound.
 fn shade(share: f64, own: bool) -> RGBColor {
     let full = if own { [0x4c, 0x9f, 0x70] } else { [0xd1, 0x49, 0x5b] };
     let [r, g, b] = full.map(|full| {

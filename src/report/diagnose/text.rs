@@ -1,4 +1,4 @@
-//! A diagnosis for people. Sensors are printed from 1.
+//! A diagnosis as text. Sensors are printed from 1.
 
 use std::fmt::Write as _;
 
@@ -7,12 +7,12 @@ use eeruf_logs::{FoundPath, Share};
 use super::DiagnosisReport;
 use crate::report::table::markdown;
 
-/// As many paths of a robot that drives are printed: each is a line of a second.
+/// Largest number of paths printed for a robot that drives, each of them a second's.
 const MOST_LINES: usize = 30;
-/// Clocks that differ by more are said to.
+/// Clocks that differ by more are reported.
 const APART_PPM: f64 = 10.0;
 
-/// The whole diagnosis.
+/// Writes the whole diagnosis.
 pub(crate) fn describe(found: &DiagnosisReport<'_>) -> String {
     let mut text = head(found);
     faults(found, &mut text);
@@ -103,7 +103,7 @@ fn scatter_us(paths: &[FoundPath]) -> Option<f64> {
     scatter.get(scatter.len() / 2).copied()
 }
 
-/// Sensors that hear nothing, and whether the log says why.
+/// Lists sensors that hear nothing, with the reason if the log shows it.
 fn faults(found: &DiagnosisReport<'_>, text: &mut String) {
     for fault in &found.diagnosis.faults {
         _ = writeln!(text, "Sensor {} is {}: {}.", fault.sensor + 1, fault.symptom.as_str(), fault.said);
@@ -190,7 +190,7 @@ fn paths(found: &DiagnosisReport<'_>, text: &mut String) {
     };
 }
 
-/// A share with its 95 % interval.
+/// Formats a share with its 95 % interval.
 fn percent(share: Share) -> String {
     let (low, high) = share.interval_95();
     if share.of == 0 {

@@ -7,15 +7,15 @@ use plotters::style::text_anchor::HPos;
 use super::picture::{At, Picture};
 use super::style::{CAPTION, INK, SMALL, TITLE, grid_step, sensor_colour, tick_label};
 
-/// The separation and window of the rings that are drawn, in ticks.
+/// The separation and window of the rings drawn, in ticks.
 const DRAWN: (u32, u32) = (2, 30);
 const PANEL: At = (400.0, 300.0);
 const LEFT: f64 = 56.0;
 const TOP: f64 = 84.0;
 const BETWEEN: f64 = 40.0;
 
-/// Lines to the left, rings to the right, a curve for each number of neighbours: dots where the period is proven, else
-/// a stroke from the bound to what was found.
+/// Draws lines at the left and rings at the right, with a curve for each number of neighbours: dots where the period is
+/// proven, else a stroke from the bound to the best one found.
 pub(crate) fn atlas(rows: &[Row]) -> Picture {
     let drawn = |row: &&Row| (row.ring.separation, row.ring.window) == DRAWN;
     let rows: Vec<&Row> = rows.iter().filter(drawn).collect();

@@ -1,4 +1,4 @@
-//! A course with what each method drove and the grid that it made of its readings (Fig. 6).
+//! A course, the way that each method drove, and the grid made of its readings (Fig. 6).
 
 use eeruf_sim::experiments::set_two::{Cell, Course, Ending, ROOM_M, Run, SetTwo, TrackPoint};
 use plotters::style::text_anchor::HPos;
@@ -13,7 +13,7 @@ const GAP: f64 = 20.0;
 const TOP: f64 = 50.0;
 const CAPTIONS: f64 = 44.0;
 const TRACK: RGBColor = RGBColor(0x1f, 0x6f, 0xb4);
-/// The platform's outline is drawn so often, in seconds.
+/// Interval between two outlines of the platform, in seconds.
 const OUTLINE_S: f64 = 1.0;
 const SIDE_M: f64 = 0.75;
 const CELL_M: f64 = 0.1;

@@ -1,4 +1,4 @@
-//! Methods side by side: what is wrong among what is believed, what is rejected, what that costs.
+//! Methods side by side: wrong shares of believed readings, shares rejected, and good readings lost.
 
 use eeruf_sim::{Method, Summary};
 use plotters::style::text_anchor::HPos;
@@ -14,7 +14,7 @@ const LANE: f64 = 28.0;
 /// Room at the right of each column for the number at the end of its longest bar.
 const ROOM: f64 = 50.0;
 
-/// A figure: its name, its unit, its colour, and how to take it from a summary.
+/// A figure: its name, unit and colour, and the function that takes it from a summary.
 type Column = (&'static str, &'static str, RGBColor, fn(&Summary) -> Option<f64>);
 
 fn in_percent(share: Option<f64>) -> Option<f64> {

@@ -24,12 +24,12 @@ const SVG_TEXT_SCALE: f64 = 0.939;
 /// Distance of the baseline of a text in SVG below that in a bitmap, in sizes of the text.
 const SVG_TEXT_DROP: f64 = 0.129;
 
-/// Pixels of a PNG for each of the picture's.
+/// Pixels of a PNG per pixel of the picture.
 const DENSITY: usize = 2;
 /// Ratio in which it is drawn larger than the PNG.
 const OVERSAMPLING: usize = 2;
 
-/// A picture before it is known what file it becomes.
+/// A picture not yet tied to a file format.
 pub(crate) struct Picture {
     width: f64,
     height: f64,
@@ -136,7 +136,7 @@ impl Picture {
         }));
     }
 
-    /// Writes it: PNG if the file's name ends so, or else SVG.
+    /// Saves the picture: PNG if the file's name ends in .png, else SVG.
     pub(crate) fn save(&self, file: &Path) -> Result<(), InputError> {
         if file.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("png")) {
             let png = self.to_png().map_err(|error| InputError::new(file, error))?;
@@ -211,7 +211,7 @@ impl Picture {
     }
 }
 
-/// Shrinks a picture: each pixel becomes the mean of the pixels that it was drawn as.
+/// Shrinks a picture: each pixel becomes the mean of the larger pixels that cover it.
 fn shrunk(large: &[u8], width: usize, height: usize) -> Vec<u8> {
     let mut small = Vec::with_capacity(3 * width * height);
     let row = 3 * width * OVERSAMPLING;

@@ -10,7 +10,7 @@ use super::style::{CAPTION, INK, SILENT, SMALL, TITLE, grid_step, sensor_colour,
 
 /// A path that fooled its receiver.
 pub(crate) struct DrawnPath {
-    /// The sensor that sent the sound: what the path is coloured by.
+    /// The sensor that sent the sound, which gives the path its colour.
     pub(crate) emitter: usize,
     /// From the emitter over all bounces to the receiver.
     pub(crate) corners: Vec<Point>,
@@ -29,7 +29,7 @@ const WIDTH: f64 = 900.0;
 const MARGIN: f64 = 20.0;
 const GAP: f64 = 24.0;
 const TOP: f64 = 64.0;
-/// Length of a beam that is hinted at.
+/// Length at which a beam is drawn.
 const BEAM_M: f64 = 0.22;
 const HALF_BEAM_RAD: f64 = 0.15;
 
@@ -73,7 +73,7 @@ pub(crate) fn scene_with_paths(world: &World, panels: &[Panel]) -> Picture {
     picture
 }
 
-/// The part of the scene that is shown, and at which scale.
+/// The visible part of the scene, and its scale.
 struct View {
     low: Point,
     width_m: f64,
@@ -83,7 +83,7 @@ struct View {
 }
 
 impl View {
-    /// All of the scene, unless that makes what matters small.
+    /// Shows all of the scene, unless the important part becomes too small.
     fn of(world: &World, panels: &[Panel], width: f64) -> Self {
         let bodies = world.robots().iter().flat_map(|robot| {
             let (middle, reach) = (position(&robot.pose), Vector::repeat(robot.radius_m()));
@@ -107,7 +107,7 @@ impl View {
         Self { low, width_m: width / scale, scale, width, height: height_m * scale }
     }
 
-    /// Width of a path that spoilt this number of readings.
+    /// Returns the width of a path that spoilt this number of readings.
     fn width_of(&self, times: usize, most: usize) -> f64 {
         let widest = (0.02 * self.scale).clamp(3.0, 5.0);
         1.0 + (widest - 1.0) * (times as f64 / most.max(1) as f64).sqrt()
@@ -162,7 +162,7 @@ impl View {
         picture
     }
 
-    /// Where a moving robot goes.
+    /// Draws the course of a moving robot.
     fn course(&self, picture: &mut Picture, world: &World, robot: usize) {
         const STEP_S: f64 = 0.25;
         const STEPS: u32 = 400;
@@ -215,7 +215,7 @@ impl View {
         (0.0..=self.width).contains(&x) && (0.0..=self.height).contains(&y)
     }
 
-    /// The part of a line within the panel.
+    /// Returns the part of a line within the panel.
     fn clipped(&self, from: At, to: At) -> Option<(At, At)> {
         let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
         for (start, change, most) in [(from.0, to.0 - from.0, self.width), (from.1, to.1 - from.1, self.height)] {
@@ -238,7 +238,7 @@ fn position(sensor: &Pose) -> Point {
     Point::from(sensor.translation.vector)
 }
 
-/// The corners of the smallest box around points, and some more.
+/// Returns the corners of the smallest box around points, with a margin.
 fn around(points: impl Iterator<Item = Point>, margin: f64) -> [Point; 2] {
     let empty = [Point::new(f64::INFINITY, f64::INFINITY), Point::new(f64::NEG_INFINITY, f64::NEG_INFINITY)];
     let [low, high] = points.fold(empty, |[low, high], point| [low.inf(&point), high.sup(&point)]);

@@ -1,4 +1,4 @@
-//! Set I over many alcoves and Set III over many placings: three figures of each method, and how they spread.
+//! Set I over many alcoves and Set III over many placings: three figures of each method, and their spread.
 
 use eeruf_sim::experiments::{Spread, set_one::SetOne, set_three::SetThree};
 use plotters::style::text_anchor::HPos;

@@ -32,14 +32,14 @@ pub(crate) fn sensor_colour(sensor: usize) -> RGBAColor {
     SENSORS[sensor % SENSORS.len()].to_rgba()
 }
 
-/// A round distance between grid lines: some `lines` of them over this range.
+/// Returns a round distance between grid lines: about `lines` of them over this range.
 pub(crate) fn grid_step(range: f64, lines: f64) -> f64 {
     let rough = range / lines;
     let magnitude = 10_f64.powf(rough.log10().floor());
     [1.0, 2.0, 5.0, 10.0].into_iter().map(|n| n * magnitude).find(|&step| step >= rough).unwrap_or(rough)
 }
 
-/// A number at an axis, without the dust of adding steps up.
+/// Formats a number at an axis, without rounding errors of added steps.
 pub(crate) fn tick_label(value: f64, step: f64) -> String {
     let digits = (-step.log10().floor()).clamp(0.0, 6.0) as usize;
     format!("{value:.digits$}")

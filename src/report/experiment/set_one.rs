@@ -10,7 +10,7 @@ use eeruf_sim::experiments::set_one::{Figures, Latency, MultiEcho, NewStep, SetO
 use crate::report::percent::{fine_percent, median, median_95, percent, percents, percents_95};
 use crate::report::table::{markdown, or_dash};
 
-/// The paper's report on a method in Set I: how many of the readings were wrong.
+/// The paper's figure for a method in Set I: the share of wrong readings.
 fn paper(method: &str) -> &'static str {
     match method {
         "conventional" => "over 30, mostly 40-80",
@@ -134,7 +134,7 @@ fn intervals(method: &str, figures: &Figures) -> Vec<String> {
     ]
 }
 
-/// Median and 90 %, and how many never see it.
+/// Formats median and 90 %, and the number that never see it.
 fn latency(latency: Option<Latency>) -> String {
     let Some(Latency { median, p90, never, .. }) = latency else { return "-".to_owned() };
     let periods = |periods: Option<u32>| periods.map_or_else(|| "never".to_owned(), |periods| periods.to_string());
@@ -162,7 +162,7 @@ fn row(method: &str, figures: &Figures) -> Vec<String> {
     ]
 }
 
-/// Changes of the figures with what is varied.
+/// Describes how the figures change with the varied setting.
 pub(crate) fn describe_variations(found: &[(&str, SetOne)]) -> String {
     let Some((_, one)) = found.first() else { return String::new() };
     let mut text = format!(

@@ -11,17 +11,16 @@ use crate::report::bounces::by_way_of;
 
 /// The most rows that are printed.
 const ROWS: usize = 8;
-/// The methods that are compared where more were simulated than there are columns for: no filter, the filter without
-/// alternation, and with it.
+/// The methods compared when there are more than columns: no filter, the filter without alternation, and with it.
 const COMPARED: [Method; 4] = [Method::Conventional, Method::Comparison, Method::Eeruf, Method::EerufBest];
 
-/// Name of a path in all runs: who heard whom, along which bounces.
+/// Key of a path in all runs: receiver, sender and bounces.
 type Key = (SensorId, Option<SensorId>, u8, Box<[Bounce]>);
 
 /// One path, and how often it fooled its receiver under each method.
 struct FooledRow {
     path: Option<HeardPath>,
-    /// For each method: wrong readings, and those of them that were believed.
+    /// For each method: number of wrong readings, and of those believed.
     counts: Vec<(usize, usize)>,
 }
 
@@ -29,12 +28,12 @@ struct FooledRow {
 pub(crate) struct Fooled {
     methods: Vec<Method>,
     rows: Vec<(Key, FooledRow)>,
-    /// For each method, the wrong readings that are a sensor's own doing: its echo faded and it heard what lies behind.
+    /// For each method, wrong readings by a sensor's own sound: its echo faded and it heard what lies behind.
     own: Vec<(usize, usize)>,
 }
 
 impl Fooled {
-    /// From the readings of one robot under each method.
+    /// Counts the readings of one robot under each method.
     pub(crate) fn of(runs: &[Readings], robot: usize, tolerance_us: f64) -> Self {
         let mut compared: Vec<&Readings> = runs.iter().collect();
         if compared.len() > COMPARED.len() {
@@ -72,7 +71,7 @@ impl Fooled {
         Self { methods: compared.iter().map(|readings| readings.method).collect(), rows, own }
     }
 
-    /// The commonest as a table. Sensors from 1, walls and poles from 0 as in files.
+    /// Writes the commonest paths as a table. Sensors from 1, walls and poles from 0 as in files.
     pub(crate) fn describe(&self) -> String {
         let mut text = String::new();
         if self.rows.is_empty() {

@@ -6,10 +6,10 @@ use eeruf_sim::{Method, Readings};
 /// Error from which a reading counts as wrong.
 pub(crate) const TOLERANCE_US: f64 = eeruf_sim::DEFAULT_TOLERANCE_US;
 
-/// All methods on one world.
+/// Results of all methods in one world.
 pub(crate) struct Study {
     pub(crate) runs: Vec<Readings>,
-    /// Methods that cannot be simulated here, and why.
+    /// Methods that cannot be simulated here, with the reason.
     pub(crate) left_out: Vec<(Method, String)>,
     pub(crate) best: Option<ShortestPeriod>,
     pub(crate) periods: u32,
@@ -22,7 +22,7 @@ impl Study {
     }
 }
 
-/// One robot's readings alone.
+/// Returns one robot's readings alone.
 pub(crate) fn of_robot(readings: &Readings, robot: usize, sensors: usize) -> Readings {
     let own: Vec<usize> =
         (0..readings.len()).filter(|&reading| usize::from(readings.robot[reading]) == robot).collect();

@@ -77,7 +77,7 @@ struct FooledJson {
     accepted: usize,
 }
 
-/// All of a method's wrong readings by who, by whom and along which path, the ones believed most often first.
+/// Lists a method's wrong readings by receiver, sender and path, those believed most often first.
 fn fooled_by(readings: &Readings, tolerance_us: f64) -> Vec<FooledJson> {
     let entries = readings.attribution(tolerance_us).into_iter().map(|entry| {
         let path = readings.paths.get(entry.path as usize);

@@ -1,4 +1,4 @@
-//! Result of a study: printed, as JSON, and drawn.
+//! Result of a study, as text, as JSON, and as pictures.
 
 pub(crate) mod fooled;
 pub(crate) mod found;

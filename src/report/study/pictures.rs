@@ -1,4 +1,4 @@
-//! The pictures of a study: which methods, which sensor and which stretch of time show most.
+//! The pictures of a study, and the choice of methods, sensor and stretch of time that show most.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -51,7 +51,7 @@ pub(crate) fn comparison(study: &Study, file: &Path) -> Result<(), InputError> {
     draw::methods_chart("Firing methods in the same scene, on the same seed", &summaries).save(file)
 }
 
-/// The share of each sensor's firings that were right and believed.
+/// Returns the share of each sensor's firings that were right and believed.
 fn right_shares(readings: &Readings) -> Vec<f64> {
     let mut counts = vec![(0_u32, 0_u32); readings.sensors];
     for reading in 0..readings.len() {
@@ -62,7 +62,7 @@ fn right_shares(readings: &Readings) -> Vec<f64> {
     counts.into_iter().map(|(right, fired)| f64::from(right) / f64::from(fired.max(1))).collect()
 }
 
-/// Errors that a method believed, by path.
+/// Returns wrong readings that a method believed, by path.
 fn panel(world: &World, readings: &Readings) -> Panel {
     let entries = readings.attribution(TOLERANCE_US);
     let foreign = |cause| matches!(cause, Cause::Crosstalk | Cause::Stale);
@@ -89,7 +89,7 @@ fn panel(world: &World, readings: &Readings) -> Panel {
     }
 }
 
-/// Where a path ran when it first fooled its receiver; where nothing moves, always.
+/// Returns the corners of a path when it first fooled its receiver.
 fn corners(world: &World, readings: &Readings, index: u32, path: &HeardPath) -> Option<Vec<Point>> {
     let first = (0..readings.len()).find(|&reading| readings.path[reading] == index)?;
     let position = |id: SensorId, time_s: f64| {
@@ -122,7 +122,7 @@ fn most_helped(before: &Readings, after: &Readings) -> (usize, u8) {
     most.map_or((0, 0), |(id, _)| (usize::from(id.robot), id.sensor))
 }
 
-/// From when to when a sensor's readings show most: the stretch where accepted and rejected ones are most balanced.
+/// Returns the stretch of a sensor's readings that shows most: accepted and rejected ones are most balanced there.
 fn richest_stretch(readings: &Readings, sensor: u8) -> (f64, f64) {
     let own: Vec<usize> = (0..readings.len()).filter(|&reading| readings.sensor[reading] == sensor).collect();
     let mixed = |stretch: &[usize]| {

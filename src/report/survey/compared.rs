@@ -1,4 +1,4 @@
-//! A simulated survey against the paths that there are.
+//! A simulated survey compared with the true paths.
 
 use serde::Serialize;
 
@@ -12,13 +12,13 @@ const SAME_US: f64 = 400.0;
 /// Accuracy of a survey.
 #[derive(Clone, Copy, Default, Serialize)]
 pub(crate) struct Compared {
-    /// Ordered pairs with a path within `until_us`, and how many of them the survey found to be such.
+    /// Ordered pairs with a path within `until_us`, and the number that the survey found.
     pub(crate) pairs: usize,
     pub(crate) pairs_found: usize,
     /// Number of pairs with a path 6 dB or more above the threshold of hearing.
     pub(crate) loud_pairs: usize,
     pub(crate) loud_pairs_found: usize,
-    /// Number of pairs that the survey wrongly says hear each other: they do not at any time, even 6 dB louder.
+    /// Number of pairs that wrongly count as hearing each other: they do not at any time, even 6 dB louder.
     pub(crate) pairs_wrong: usize,
     /// Paths between different sensors that the survey found, and how many of them no sound takes that
     /// would be heard 6 dB louder.

@@ -17,7 +17,7 @@ pub(crate) use picture::who_hears_whom;
 pub(crate) use ring::{FROM, RingTerms, ring_file};
 pub(crate) use text::describe;
 
-/// A survey's log and what was found in it.
+/// A survey's log and its result.
 pub(crate) struct SurveyReport<'a> {
     pub(crate) file: &'a Path,
     pub(crate) log: &'a FiringLog,
@@ -74,7 +74,7 @@ struct PathJson {
     travel_error_us: f64,
     length_m: f64,
     scatter_us: f64,
-    /// At how many offsets it was heard, of how many.
+    /// Number of offsets at which it was heard, and of all.
     offsets: (u32, u32),
     readings: u32,
     heard: f64,

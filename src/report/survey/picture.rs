@@ -1,12 +1,12 @@
-//! Matrix of who hears whom: a square for each ordered pair, darker the sooner the sound comes, with the travel time in
-//! it.
+//! Matrix of which sensor hears which: a square for each ordered pair, darker for shorter travel times, with the travel
+//! time in it.
 
 use plotters::style::RGBColor;
 
 use super::SurveyReport;
 use crate::report::draw::Picture;
 
-/// Draws it: who sends to the right, who hears downwards.
+/// Draws the matrix: senders to the right, receivers downwards.
 pub(crate) fn who_hears_whom(found: &SurveyReport<'_>) -> Picture {
     const LEFT: f64 = 70.0;
     const TOP: f64 = 96.0;
@@ -42,7 +42,7 @@ pub(crate) fn who_hears_whom(found: &SurveyReport<'_>) -> Picture {
     picture
 }
 
-/// Grey for nothing, green for own echoes, red for sound that must be kept apart, yellow for later sound.
+/// Returns grey for nothing, green for own echoes, red for sound that must be kept apart, yellow for later sound.
 fn colour(is_heard: bool, is_near: bool, is_own: bool) -> RGBColor {
     match (is_heard, is_own, is_near) {
         (false, ..) => RGBColor(0xf0, 0xf0, 0xf0),

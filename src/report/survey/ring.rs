@@ -4,18 +4,18 @@ use std::fmt::Write as _;
 
 use super::SurveyReport;
 
-/// Needs of a ring file besides who hears whom.
+/// Needs of a ring file other than the pairs that hear each other.
 pub(crate) struct RingTerms {
     pub(crate) t_delta_us: u32,
     pub(crate) window_us: u32,
-    /// Is added to travel times.
+    /// Time added to travel times.
     pub(crate) tolerance_us: u32,
 }
 
-/// Beginning of the ring files that a survey writes.
+/// First words of the ring files that a survey writes.
 pub(crate) const FROM: &str = "# From the survey ";
 
-/// The pairs that hear each other as neighbours, each with the time after which the other's sound has passed.
+/// Writes the pairs that hear each other as neighbours, each with the time after which the other's sound has passed.
 pub(crate) fn ring_file(found: &SurveyReport<'_>, terms: &RingTerms) -> String {
     let conflicts = found.surveyed.conflicts(found.until_us);
     let round = |travel_us: f64| (travel_us.ceil() as u32).saturating_add(terms.tolerance_us).next_multiple_of(100);

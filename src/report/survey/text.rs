@@ -1,4 +1,4 @@
-//! A survey for people. Sensors are printed from 1.
+//! A survey as text. Sensors are printed from 1.
 
 use std::fmt::Write as _;
 
@@ -7,7 +7,7 @@ use eeruf_logs::FoundPath;
 use super::{SurveyReport, compare};
 use crate::report::table::markdown;
 
-/// All of it.
+/// Writes the whole result.
 pub(crate) fn describe(found: &SurveyReport<'_>) -> String {
     let surveyed = found.surveyed;
     let mut text = format!(
@@ -87,7 +87,7 @@ fn foreign(found: &SurveyReport<'_>, text: &mut String) {
     _ = writeln!(text, "{}", markdown(&header, found.surveyed.paths.iter().map(row)));
 }
 
-/// Pairs without a path, and how much that is worth.
+/// Lists pairs without a path, and the weight of that evidence.
 fn silent(found: &SurveyReport<'_>, text: &mut String) {
     let near = |x, y| found.surveyed.between(x, y).any(|path| path.travel_us <= f64::from(found.until_us));
     let silent: Vec<_> = found.pairs().filter(|&(x, y)| !near(x, y)).collect();

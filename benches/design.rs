@@ -1,4 +1,4 @@
-//! Time of the shortest period: the instances of the theory's table, those of it in finer ticks, and a ring file's.
+//! Times the search for the shortest period: the theory's table, the same in finer ticks, and a ring file.
 
 use eeruf_benches::{design_of_file, time};
 use eeruf_core::Layout;

@@ -1,13 +1,13 @@
-//! Instructions of five calls, counted by Valgrind: they repeat to a thousandth on any machine, as times do not.
+//! Instructions of five calls, counted by Valgrind: unlike times, they repeat to a thousandth on any machine.
 
 use std::process::Command;
 
 use eeruf_benches::CALLS;
 
-/// Thousands of instructions of each call, as tests are built.
+/// Thousands of instructions of each call, in a test build.
 const THOUSANDS: [u64; CALLS.len()] = [87_835, 75_683, 476_846, 431, 1_044];
 
-/// Instructions of the program, with a call or without.
+/// Counts the instructions of the program, with a call or without.
 fn instructions(call: Option<usize>) -> u64 {
     let program = ["--tool=callgrind", "--callgrind-out-file=/dev/null", env!("CARGO_BIN_EXE_once")];
     let run = Command::new("valgrind").args(program).args(call.map(|call| call.to_string())).output();

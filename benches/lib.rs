@@ -1,4 +1,4 @@
-//! Timings, and the calls of which instructions are counted.
+//! Timings, and the calls whose instructions are counted.
 
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -24,7 +24,7 @@ pub fn time<R>(name: &str, things: usize, mut run: impl FnMut() -> R) {
     }
 }
 
-/// A call of which instructions are counted.
+/// A call whose instructions are counted.
 pub type Call = fn() -> Option<u32>;
 
 /// The calls by name.
@@ -57,7 +57,7 @@ fn period_of_ring_8() -> Option<u32> {
     period(8, Layout::Ring(4), 100)
 }
 
-/// The path of `eeruf design --period-only`, from text to schedule, through the atlas.
+/// Does the work of `eeruf design --period-only`, from text to schedule, with the atlas.
 pub fn design_of_file() -> Option<u32> {
     let text = "sensors = 12\nt_delta_us = 999\nmin_interval_us = 15_000\nwindow_us = 30_000";
     let spec = RingSpec::from_text(black_box(text)).ok()?;

@@ -1,4 +1,4 @@
-//! Makes one of the counted calls, by its number, and prints what it gives; without a number none.
+//! Makes one of the counted calls, by its number, and prints the result; without a number it makes none.
 
 use eeruf_benches::CALLS;
 

@@ -81,7 +81,7 @@ fn nested_loops(problem: &Problem<'_>) -> u64 {
     loops(problem, 0, &mut [(0, 0); 64])
 }
 
-/// The least time of a few runs, in milliseconds.
+/// Returns the shortest time of a few runs, in milliseconds.
 fn least_ms<R>(runs: usize, mut run: impl FnMut() -> R) -> (f64, R) {
     let mut once = || {
         let start = Instant::now();

@@ -5,8 +5,7 @@ use std::fs;
 use std::path::Path;
 
 const ATLAS: &str = "../crates/eeruf-design/src/atlas/atlas.txt";
-/// With this many sensors no search of the atlas's rings takes longer than one waits for a key press, a few tenths of a
-/// second.
+/// Up to this many sensors no search of the atlas's rings takes more than a few tenths of a second.
 const QUICK: u64 = 12;
 /// Number of adjacent sensors that are neighbours on the page.
 const NEIGHBOURS: u64 = 4;
@@ -21,7 +20,7 @@ fn main() {
     fs::write(Path::new(&folder).join("atlas.txt"), part).expect("cargo made the folder");
 }
 
-/// The row without what the page does not show, the hash of its certificate, if it is proven and the page needs it.
+/// Returns a proven row that the page needs, without its certificate's hash, which the page does not show.
 fn slow(row: &str) -> Option<String> {
     let words: Vec<&str> = row.split(' ').collect();
     let [sensors, _, neighbours, separation, interval, window, period, bound, certified, preferred, _, times] =

@@ -6,7 +6,7 @@ use std::time::Instant;
 
 static BEGIN: LazyLock<Instant> = LazyLock::new(Instant::now);
 
-/// The seconds that this thread had a core, where the system says so, as Linux does; else those of the wall's clock.
+/// Returns this thread's processor time in seconds, as Linux tells it; else the time of the wall clock.
 pub(crate) fn core_seconds() -> f64 {
     let stat = read_to_string("/proc/thread-self/schedstat").ok();
     let ns = stat.and_then(|stat| stat.split(' ').next()?.parse::<f64>().ok());

@@ -12,18 +12,18 @@ use eeruf_sim::{Cause, Entry, Method, Options, Physics, Readings, quantile, simu
 
 use crate::driving::{Place, world};
 
-/// Counts over the readings of one alcove, or of all.
+/// Counts for one alcove, or for all.
 #[derive(Clone, Copy, Default)]
 struct Counts {
-    /// Readings that foreign sound caused.
+    /// Readings caused by foreign sound.
     foreign: usize,
     /// Pairs among them that are named with the right sender.
     right: usize,
-    /// Readings that were said to be foreign.
+    /// Readings called foreign.
     named: usize,
     /// Readings with an edge.
     readings: usize,
-    /// Paths that were found, and how many of them no sound took.
+    /// Paths found, and how many of them no sound took.
     paths: usize,
     accidental: usize,
     /// Number of faults reported; nothing is broken.
@@ -48,7 +48,7 @@ impl Where {
         ("rooms-driving", Self::Driving(Place::Room)),
     ];
 
-    /// Readings there, and the speed of sound.
+    /// Returns the readings there, and the speed of sound.
     fn readings(
         self,
         number: u64,

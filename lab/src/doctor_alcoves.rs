@@ -22,7 +22,7 @@ const SENSORS: usize = 8;
 /// Echoes that differ by less are the same.
 const MOVED_US: f64 = 150.0;
 
-/// One alcove's log and what the doctor says of it.
+/// One alcove's log and the doctor's answer on it.
 #[derive(Clone, Default)]
 struct Outcome {
     examination: Examination,
@@ -30,7 +30,7 @@ struct Outcome {
     wrong: f64,
     /// Foreign readings by receiver and sender.
     heard: [[u32; SENSORS]; SENSORS],
-    /// Sensors of which the log can tell that they are fooled.
+    /// Sensors that the log can show to be fooled.
     tells: [bool; SENSORS],
     /// The stamps with own echoes only.
     alone: Examination,
@@ -153,7 +153,7 @@ fn outcome(
     Ok(all)
 }
 
-/// A part with Wilson's 95 % interval in percent.
+/// Returns a share with Wilson's 95 % interval in per cent.
 fn share(part: usize, of: usize) -> String {
     if of == 0 {
         return "-".to_owned();

@@ -17,7 +17,7 @@ pub(crate) enum Place {
     Room,
 }
 
-/// A robot that drives and knows its motion.
+/// Makes the world of a robot that drives and knows its motion.
 pub(crate) fn world(number: u64, place: Place, physics: Physics) -> Result<World, Box<dyn Error>> {
     let alcove = Alcove::random(number);
     let mut robot = alcove.robot();

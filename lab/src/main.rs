@@ -1,6 +1,6 @@
 //! The lab: measurements that the documents quote, and searches whose results stand in the sources.
 //!
-//! `cargo lab` lists them. None of it is published, nor needed by who uses eeruf.
+//! `cargo lab` lists them. None of it is published or needed to use eeruf.
 
 mod clock;
 mod constant_depth;
@@ -27,10 +27,10 @@ use std::error::Error;
 use std::io::Write as _;
 use std::process::ExitCode;
 
-/// Success, or the reason why there is nothing to print.
+/// Success, or the reason why nothing is printed.
 type Answer = Result<(), Box<dyn Error>>;
 
-/// A command: its name, its arguments, what it prints.
+/// A command: its name, arguments and output.
 type Command = (&'static str, &'static str, &'static str, fn(&[String]) -> Answer);
 
 const COMMANDS: [Command; 17] = [

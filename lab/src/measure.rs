@@ -52,7 +52,7 @@ impl Arguments {
     }
 }
 
-/// A number with its interval.
+/// Formats a number with its interval.
 fn with_interval(estimate: &Estimate, scale: f64, digits: usize) -> String {
     let Estimate { value, interval_95: [low, high] } = estimate;
     let number = |value: &f64| format!("{:.digits$}", scale * value);
@@ -66,7 +66,7 @@ fn false_stops(cell: &Cell) -> String {
     }
 }
 
-/// The way that a robot goes, or the angle that it turns by, until 95 % are seen.
+/// Formats the distance or the angle that a robot moves until 95 % are seen.
 fn blind_travel(under: &Under, t95_ms: f64, turn_deg_s: f64) -> String {
     let speed_m_s = under.places.iter().map(|place| place.speed_m_s).sum::<f64>() / under.places.len() as f64;
     match under.condition.moving {
@@ -133,7 +133,7 @@ fn curve(measured: &Measured, chosen: &Measured) {
     }
 }
 
-/// Prints how often a sound way is recommended over itself with something planted in it, which counts as the simpler.
+/// Prints how often a sound way loses against itself with a planted flaw, which counts as the simpler.
 fn planted(ways: &[MeasuredWay], asked: &MeasureAsked, choose: u64, blocks: u64) -> crate::Answer {
     let Some(sound) = ways.iter().find(|way| way.way.name == "one_by_one_33ms") else { return Ok(()) };
     let controls = Control::PLANTED.map(Some).into_iter().chain([None]);

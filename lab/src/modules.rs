@@ -2,7 +2,7 @@
 
 use eeruf_modules::{Interface, KEYS, Module, NoEcho, PRESETS, Preset, Source, Value};
 
-/// A value as a table shows it.
+/// Formats a value for a table.
 fn shown(value: Value<'_>) -> String {
     match value {
         Value::Number(number) => format!("{number}"),

@@ -45,7 +45,7 @@ pub(crate) fn main(_: &[String]) -> crate::Answer {
     Ok(())
 }
 
-/// Reflection of a panel, relative to a wall, in dB.
+/// Returns the reflection of a panel relative to a wall, in dB.
 fn straight_ahead_db(distance_m: f64, width_m: f64) -> Result<f64, Box<dyn std::error::Error>> {
     let amplitude = |half_m: f64, narrow_panels| -> Result<f64, Box<dyn std::error::Error>> {
         let panel = Wall::new(distance_m, half_m, distance_m, -half_m).with_faces(Faces::Both);
@@ -59,10 +59,10 @@ fn straight_ahead_db(distance_m: f64, width_m: f64) -> Result<f64, Box<dyn std::
     Ok(20.0 * libm::log10(amplitude(0.5 * width_m, true)? / amplitude(0.5 * width_m, false)?))
 }
 
-/// A path, by its emitter, its receiver and its bounces.
+/// Key of a path: its emitter, its receiver and its bounces.
 type Key = (u32, u32, Vec<Bounce>);
 
-/// All paths that are heard, and how loud they are.
+/// Returns all audible paths and their levels.
 fn heard(world: &World) -> Result<BTreeMap<Key, f64>, PathsError> {
     let robot = &world.robots()[0];
     let (scene, transducer) = (world.scene(), &robot.transducer);

@@ -1,4 +1,4 @@
-//! Answers of Rust and their durations, for Python to be held against. Prints one JSON object.
+//! Rust's answers and their durations, for comparison with Python. Prints one JSON object.
 //!
 //! ```text
 //! cargo lab rust-side paths    every critical path of the shared corpus

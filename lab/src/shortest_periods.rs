@@ -28,7 +28,7 @@ fn list<T: std::str::FromStr>(text: &str) -> Vec<T> {
     text.split(',').filter_map(|item| item.parse().ok()).collect()
 }
 
-/// Searches every ring that is asked for, and hands on what was found and the milliseconds that it took.
+/// Searches every ring asked for, and passes on the result and its milliseconds.
 fn search(arguments: &[String], mut found: impl FnMut(Ring, Shortest, f64)) -> crate::Answer {
     let argument = |i: usize, default: &'static str| arguments.get(i).map_or(default, String::as_str);
     let (ticks, separation_ms): (u32, u32) = (argument(0, "1").parse()?, argument(1, "2").parse()?);
@@ -54,7 +54,7 @@ fn search(arguments: &[String], mut found: impl FnMut(Ring, Shortest, f64)) -> c
     Ok(())
 }
 
-/// Prints the columns, a line for each ring.
+/// Prints the columns, one line for each ring.
 pub(crate) fn main(arguments: &[String]) -> crate::Answer {
     println!("layout sensors window period bound nodes milliseconds");
     let (mut times, begin) = (Vec::new(), Instant::now());
@@ -87,7 +87,7 @@ pub(crate) fn table(_: &[String]) -> crate::Answer {
     Ok(())
 }
 
-/// 41355 as 41,355.
+/// Formats 41355 as 41,355.
 fn with_commas(number: u64) -> String {
     let digits = number.to_string();
     let mut text = String::new();

@@ -34,7 +34,7 @@ fn time(scene: &Scene, source: Point, receivers: &[Point], order: u32) -> Value 
            "paths_per_s": paths.len() as f64 / core * 1e6})
 }
 
-/// A star of many walls: a polygon whose corners lie between two circles, by a plain generator.
+/// Makes a star of many walls: a polygon whose corners lie between two circles, by a plain generator.
 fn star(walls: usize) -> Vec<Wall> {
     let mut state = 12345u64;
     let mut radius = || {
@@ -53,7 +53,7 @@ fn star(walls: usize) -> Vec<Wall> {
         .collect()
 }
 
-/// A hall with square pillars on a grid.
+/// Makes a hall with square pillars on a grid.
 fn pillars(per_side: usize) -> Vec<Wall> {
     let size = 2.0 * per_side as f64;
     let mut walls: Vec<_> = Wall::polyline(&[[0.0, 0.0], [size, 0.0], [size, size], [0.0, size], [0.0, 0.0]]).collect();

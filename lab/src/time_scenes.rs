@@ -16,7 +16,8 @@ use eeruf_sim::experiments::set_one::Alcove;
 use eeruf_sim::experiments::set_two::{SECOND_BEHIND, SetTwoOptions, set_two};
 use eeruf_sim::*;
 
-/// The quickest of several runs of `work`, in milliseconds: this many, or as many as fit into a second, at least three.
+/// Returns the shortest time of several runs of `work`, in milliseconds: this many, or as many as fit into a second, at
+/// least three.
 fn quickest_ms(asked: Option<u32>, mut work: impl FnMut()) -> f64 {
     let (start, mut quickest, mut runs) = (Instant::now(), f64::INFINITY, 0);
     while asked.map_or(runs < 3 || start.elapsed().as_secs_f64() < 1.0, |asked| runs < asked) {
@@ -47,7 +48,7 @@ fn matrix_ms(poles: usize, asked: Option<u32>) -> (f64, usize) {
     (ms, matrix.paths().len())
 }
 
-/// A hall with this many rows of square pillars: 1,028 walls with 16.
+/// Makes a hall with this many rows of square pillars: 1,028 walls with 16.
 fn pillars(rows: u32) -> Vec<Wall> {
     let size_m = 3.0 * f64::from(rows);
     let corners = [[0.0, 0.0], [size_m, 0.0], [size_m, size_m], [0.0, size_m], [0.0, 0.0]];
@@ -92,7 +93,7 @@ fn moving_ms(physics: Physics, room: Option<Room>, asked: Option<u32>) -> (f64, 
     (ms, readings)
 }
 
-/// A ring of eight that drives at 0.2 m/s and turns.
+/// Makes a ring of eight that drives at 0.2 m/s and turns.
 fn driving(at: [f64; 2]) -> Robot {
     let ring = Robot::ring(Pose::new(Vector::from(at), 0.3), 8, TAU / 8.0, 0.2, Transducer::POLAROID_6500);
     Robot { motion: Motion::Constant { velocity: Vector::new(0.14, 0.14), turn_rad_s: 1.0 }, ..ring }

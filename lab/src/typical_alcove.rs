@@ -46,12 +46,12 @@ pub(crate) fn main(arguments: &[String]) -> crate::Answer {
     Ok(())
 }
 
-/// An alcove as Set I has it.
+/// Makes an alcove of Set I.
 fn world(number: u64) -> World {
     Alcove::random(number).world().expect("every random alcove has room").with_seed(number)
 }
 
-/// The four figures, shares as fractions of 1.
+/// Returns the four figures, shares as fractions of 1.
 fn figures(world: &World) -> Result<[f64; 4], SimulationError> {
     let of = |method| Ok::<_, SimulationError>(simulate(world, method, &Options::periods(1000))?.summary());
     let (conventional, eeruf) = (of(Method::Conventional)?, of(Method::Eeruf)?);
@@ -59,13 +59,13 @@ fn figures(world: &World) -> Result<[f64; 4], SimulationError> {
     Ok([conventional.wrong_of_all, eeruf.wrong_of_all, lost, eeruf.starved as f64])
 }
 
-/// The share of alcoves with less, those with as much counted half.
+/// Returns the share of alcoves below, counting equal ones half.
 fn rank(each: &[[f64; 4]], figure: usize, value: f64) -> f64 {
     let count = |is: fn(&f64, &f64) -> bool| each.iter().filter(|of| is(&of[figure], &value)).count() as f64;
     (count(|a, b| a < b) + 0.5 * count(|a, b| a == b)) / each.len() as f64
 }
 
-/// A figure, and in brackets how many per cent of the alcoves have less.
+/// Formats a figure, with the percentage of alcoves below it in brackets.
 fn cell(each: &[[f64; 4]], figure: usize, value: f64) -> String {
     let rank = 100.0 * rank(each, figure, value);
     if figure == 3 { format!("{value} ({rank:.0} %)") } else { format!("{:.1} ({rank:.0} %)", 100.0 * value) }

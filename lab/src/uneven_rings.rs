@@ -11,7 +11,7 @@ use crate::clock::core_seconds;
 struct Random(u64);
 
 impl Random {
-    /// A number from `least` to `most`.
+    /// Draws a number from `least` to `most`.
     fn within(&mut self, least: u32, most: u32) -> u32 {
         self.0 ^= self.0 >> 12;
         self.0 ^= self.0 << 25;

@@ -12,8 +12,8 @@ use serde::Serialize;
 
 use crate::progress::progress;
 
-/// Budget of nodes for a search on the page, and where there are more sensors than [`FEW`], each of whose nodes costs
-/// many times as much: a minute or so.
+/// Search budget on the page, in nodes, and for more sensors than [`FEW`], when each node takes many times as long:
+/// about a minute.
 const BUDGET: u64 = 2_000_000;
 const BUDGET_OF_MANY: u64 = 50_000;
 const FEW: usize = 24;
@@ -21,13 +21,13 @@ const FEW: usize = 24;
 const ATLAS: &str = include_str!(concat!(env!("OUT_DIR"), "/atlas.txt"));
 /// Budget of nodes for the certificate's proof, as by default in `eeruf design`.
 const CERTIFICATE_BUDGET: usize = 1_000_000;
-/// After this many nodes of a proof the page learns how far it is.
+/// Number of nodes of a proof between two reports to the page.
 const SAID_EVERY: usize = 256;
 
 /// A designed ring. Times in microseconds.
 #[derive(Serialize)]
 pub(crate) struct DesignAnswer {
-    /// The output of `eeruf design --json`; `seconds` is 0, as there is no clock.
+    /// The output of `eeruf design --json`; `seconds` is 0, as a page has no clock for it.
     found: FoundJson,
     /// The change that `t_delta` must cover, and the largest that the schedule allows.
     t_delta_us: u32,
@@ -43,7 +43,7 @@ pub(crate) struct DesignAnswer {
     /// Speed of the robot above which good readings differ by more than `t_delta`.
     speed_m_s: f64,
     fire_us: [Vec<u32>; 2],
-    /// True if the verifier, which shares nothing with the search, agrees.
+    /// True if the verifier, which shares no code with the search, agrees.
     verified: bool,
     rust: String,
     c: String,
@@ -98,14 +98,14 @@ pub(crate) fn design(ring: &str) -> Result<DesignAnswer, String> {
     })
 }
 
-/// Changes that would make the same answer shorter.
+/// Returns changes that would shorten the period of this answer.
 pub(crate) fn faster(ring: &str) -> Result<Vec<What>, String> {
     let relaxed = shortest(ring)?.what_if(&mut say).map_err(|error| error.to_string())?;
     let what = |WhatIf { need, period, proven }| What { need, period_us: period.map(Micros::as_micros), proven };
     Ok(relaxed.into_iter().map(what).collect())
 }
 
-/// The certificate of the same answer.
+/// Returns the certificate of this answer.
 pub(crate) fn certificate(ring: &str) -> Result<Certificate, String> {
     let design = shortest(ring)?;
     let mut calls = 0;
@@ -124,7 +124,7 @@ pub(crate) fn certificate(ring: &str) -> Result<Certificate, String> {
 }
 
 thread_local! {
-    /// The last answer, since what follows is asked of it.
+    /// The last answer, since later questions refer to it.
     static LAST: RefCell<Option<(String, RingDesign)>> = const { RefCell::new(None) };
 }
 
@@ -142,7 +142,7 @@ fn shortest(ring: &str) -> Result<RingDesign, String> {
     Ok(design)
 }
 
-/// Tells the page how far a search is.
+/// Reports the search's progress to the page.
 fn say(at: &Progress) -> ControlFlow<()> {
     progress(f64::NAN, at.nodes as f64);
     ControlFlow::Continue(())

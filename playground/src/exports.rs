@@ -1,5 +1,5 @@
-//! Calls from JavaScript. It reserves room for a question, writes the question there, and asks; the answer lies where
-//! [`answer_at`] says. Both are JSON in UTF-8.
+//! Calls from JavaScript. JavaScript reserves room for a question, writes the question there, and asks; the answer is
+//! at [`answer_at`]. Both are JSON in UTF-8.
 
 use std::cell::RefCell;
 
@@ -10,7 +10,7 @@ thread_local! {
     static ANSWER: RefCell<String> = const { RefCell::new(String::new()) };
 }
 
-/// Room for a question of this many bytes; valid until the next call.
+/// Reserves room for a question of this many bytes, valid until the next call.
 // SAFETY: no other function of that name exists in this module; so for the other two.
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn reserve(bytes: usize) -> *mut u8 {
@@ -21,7 +21,7 @@ pub(crate) extern "C" fn reserve(bytes: usize) -> *mut u8 {
     })
 }
 
-/// Answers the question; how many bytes the answer has.
+/// Answers the question. Returns the length of the answer in bytes.
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn ask() -> usize {
     let question = QUESTION.take();

@@ -6,7 +6,7 @@ use std::path::Path;
 use eeruf_logs::{Doctor, Echo, Options, read_text};
 use serde::Serialize;
 
-/// More points of a sensor are thinned: a picture shows no more.
+/// Largest number of points of a sensor in the picture; more are thinned out.
 const MOST_POINTS: usize = 2000;
 
 #[derive(Serialize)]
@@ -19,7 +19,7 @@ pub(crate) struct Pasted {
     /// Guesses with the option of the program that overrides each.
     guesses: Vec<String>,
     damage: Vec<String>,
-    /// The points have seconds, and else the number of the reading.
+    /// True if the points have seconds; else they have the number of the reading.
     is_timed: bool,
 }
 

@@ -1,6 +1,6 @@
-//! The page's function that shows how far a long task is.
+//! The page's function that shows the progress of a long task.
 
-/// Says how far a long task is: the share done from 0 to 1, or NaN where it is not known, and the nodes of a search.
+/// Reports progress: the share done from 0 to 1, or NaN if unknown, and the nodes of a search.
 pub(crate) fn progress(share: f64, nodes: f64) {
     #[cfg(target_arch = "wasm32")]
     {

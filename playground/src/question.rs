@@ -20,9 +20,9 @@ enum Question {
     Design { ring: String },
     /// Lines of a serial monitor, or any other text with ranges.
     Paste { text: String },
-    /// Changes that would make it shorter.
+    /// Changes that would make the period shorter.
     Faster { ring: String },
-    /// The certificate that it is the shortest, and its checker.
+    /// The certificate that the period is the shortest, and its checker.
     Certificate { ring: String },
 }
 
@@ -73,7 +73,7 @@ fn json<T: Serialize>(answer: Result<T, String>) -> String {
     serde_json::to_string(&answer).unwrap_or_default()
 }
 
-/// The world that a scene's text describes.
+/// Reads the world that a scene's text describes.
 fn world(scene: &str) -> Result<World, String> {
     World::from_text(Path::new("scene"), scene).map_err(|error| error.message().to_owned())
 }

@@ -12,7 +12,7 @@ use crate::trace::pairs;
 
 /// Budget of nodes for the search for `eeruf_best`, as in `eeruf study`.
 const BUDGET: u64 = 20_000;
-/// More periods than anybody waits for.
+/// The largest number of periods.
 const MAX_PERIODS: u32 = 100_000;
 
 /// A run of a robot's ring. Sensors from 0.
@@ -28,7 +28,7 @@ pub(crate) struct Run {
     fooled: Vec<Attribution>,
     /// The readings of the first seconds, as arrays of equal length.
     readings: Shown,
-    /// The ways that their sound took.
+    /// The paths that their sound took.
     paths: Vec<ShownPath>,
 }
 
@@ -44,7 +44,7 @@ struct Shown {
     reference_us: Vec<f64>,
     /// One of `accepted`, `rejected`, `none` (nothing heard, believed or not), `first` (not yet compared).
     verdict: Vec<&'static str>,
-    /// True if it is off by more than the tolerance, believed.
+    /// True if it was believed and is off by more than the tolerance.
     wrong: Vec<bool>,
     cause: Vec<Cause>,
     /// The path in `paths`; `null` for none.
@@ -103,7 +103,7 @@ pub(crate) fn run(world: &World, method: Method, periods: u32, shown_s: f64) -> 
     })
 }
 
-/// The simulation's error without the number of the robot, of which there is one.
+/// Returns the simulation's error without the robot's number, since there is only one robot.
 fn sentence(error: &SimulationError) -> String {
     error.to_string().trim_start_matches("robot 1, ").to_owned()
 }

@@ -22,7 +22,7 @@ struct TracedPath {
     receiver: u32,
     order: u32,
     length_m: f64,
-    /// Above what is just heard.
+    /// Level above the threshold of hearing.
     level_db: f64,
     corners: Vec<[f64; 2]>,
 }
@@ -61,7 +61,7 @@ pub(crate) fn trace(world: &World) -> Result<Traced, String> {
     })
 }
 
-/// Points as JSON has them.
+/// Converts points to JSON.
 pub(crate) fn pairs(points: &[Point]) -> Vec<[f64; 2]> {
     points.iter().map(|point| [point.x, point.y]).collect()
 }

@@ -7,7 +7,7 @@ use eeruf_sim::{Entry, LabMate, Method};
 
 use super::{Asked, Cell, Table, flow, usual};
 
-/// Choices: what the map gets, and for how long sensors listen.
+/// Choices: what enters the map, and how long sensors listen.
 fn candidates() -> Vec<Entry> {
     let mut entries = vec![Entry::from(Method::Flow)];
     for ms in [12, 14, 16, 18, 24] {
@@ -20,7 +20,7 @@ fn candidates() -> Vec<Entry> {
     entries
 }
 
-/// Flow as `eeruf design` has it for a ring of this speed.
+/// Returns flow as `eeruf design` sets it for a ring at this speed.
 fn designed(speed_m_s: f64) -> Entry {
     let reach = needs_to_see_m(speed_m_s).map(|m| SpeedOfSound::default().echo_time((1e3 * m).round() as u32));
     flow("flow as designed", Votes::TwoInARow, None, reach)

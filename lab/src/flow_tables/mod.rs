@@ -29,7 +29,7 @@ impl Cell {
         Self([value, low, high])
     }
 
-    /// The mean of percentages.
+    /// Returns the mean of percentages.
     fn mean(values: impl IntoIterator<Item = f64>) -> Self {
         Spread::of(values).map_or(Self([f64::NAN; 3]), |of| Self::new(of.mean, of.mean_95))
     }
@@ -38,19 +38,19 @@ impl Cell {
         Spread::of(values).map_or(Self([f64::NAN; 3]), |of| Self::new(of.median, of.median_95))
     }
 
-    /// Nine in ten are no more.
+    /// Returns the 90th percentile.
     fn p90(values: impl IntoIterator<Item = f64>) -> Self {
         Spread::of(values).map_or(Self([f64::NAN; 3]), |of| Self::new(of.p90, of.p90_95))
     }
 
-    /// One in ten is no more.
+    /// Returns the 10th percentile.
     fn p10(values: impl IntoIterator<Item = f64>) -> Self {
         let Self([value, low, high]) = Self::p90(values.into_iter().map(|value| -value));
         Self([-value, -high, -low])
     }
 }
 
-/// Figures of ways under conditions.
+/// Figures of ways of firing under conditions.
 pub(crate) struct Table {
     name: &'static str,
     head: &'static [&'static str],
@@ -64,7 +64,7 @@ impl Table {
         Self { name, head, digits, rows: vec![] }
     }
 
-    /// Prints a row and keeps it.
+    /// Prints a row and stores it.
     fn row(&mut self, condition: impl Into<String>, way: impl Into<String>, cells: Vec<Cell>) {
         let (condition, way, digits) = (condition.into(), way.into(), self.digits);
         let words = cells.iter().map(|Cell([value, low, high])| match value.is_nan() {
@@ -103,7 +103,7 @@ impl Asked {
         (self.first..self.first + self.count).collect()
     }
 
-    /// The robot of the ring's file.
+    /// Returns the robot of the ring's file.
     fn robot(&self) -> Result<Robot, Box<dyn std::error::Error>> {
         let spec = RingSpec::from_text(&std::fs::read_to_string(&self.ring)?).map_err(|error| error.to_string())?;
         let robot = spec.room_robot()?.robot;
@@ -112,7 +112,7 @@ impl Asked {
     }
 }
 
-/// Flow with these votes; the quiet as a share of R, which each keeps.
+/// Returns flow with these votes; its quiet, given as a share of R, stays constant.
 fn flow(name: &str, votes: Votes, least: Option<Micros>, window: Option<Micros>) -> Entry {
     let mut options = FlowOptions::default();
     (options.belief, options.least, options.window) =
@@ -120,7 +120,7 @@ fn flow(name: &str, votes: Votes, least: Option<Micros>, window: Option<Micros>)
     Entry::new(name, Method::Flow).with_flow(options)
 }
 
-/// One by one, the same with a median of three, and flow as it is recommended.
+/// Returns one by one, one by one with a median of three, and flow as recommended.
 fn usual() -> Vec<Entry> {
     vec![
         Entry::new("one by one", Method::Sequential),

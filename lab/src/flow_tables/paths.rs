@@ -11,12 +11,12 @@ use super::{Asked, Cell, Table};
 const SENSORS: usize = 8;
 const BLANKING_US: u64 = 300;
 const WINDOW_US: u64 = 25_000;
-/// The longest time for which foreign sound is under way, in us: less than R.
+/// The longest travel time of foreign sound, in us: less than R.
 const LONGEST_US: f64 = 33_000.0;
-/// A ring without a judge of its own motion.
+/// A ring with a judge that knows no motion.
 type AnyRing<J> = Ring<InTurn<SENSORS>, J, SENSORS, 1, 3>;
 
-/// The time of a path in us, and its change in us per ms; it turns at its ends.
+/// Travel time of a path in us, and its change in us per ms, which turns at its ends.
 struct Path {
     us: f64,
     rate: f64,
@@ -39,7 +39,7 @@ impl Path {
 struct Sound {
     own: Vec<Path>,
     foreign: Vec<(u8, u8, Path)>,
-    /// When sensor 0's wall goes.
+    /// Time when sensor 0's wall disappears.
     gone: u64,
 }
 
@@ -57,7 +57,7 @@ impl Sound {
         Self { own, foreign, gone }
     }
 
-    /// Hears for some seconds; each reading is told to `seen`, with the time of its firing.
+    /// Runs for some seconds and passes each reading, with the time of its firing, to `seen`.
     fn run<J: Judge>(
         &self,
         mut ring: AnyRing<J>,
@@ -127,7 +127,7 @@ fn believing(
     FlowRing::flow(SENSORS, turns, belief, config(), Instant::from_micros(0))
 }
 
-/// Accepted echoes, and those of them that are more than 0.5 ms from the sensor's own.
+/// Returns the number of accepted echoes, and of those more than 0.5 ms from the sensor's own.
 fn wrong<J: Judge>(sound: &Sound, random: Random, ring: AnyRing<J>) -> [u32; 2] {
     let mut counts = [0; 2];
     sound.run(ring, random, 10, |fired, sensor, t_echo, _| {
@@ -173,7 +173,7 @@ pub(super) fn table(asked: &Asked) -> Result<Table, Box<dyn std::error::Error>> 
     Ok(table)
 }
 
-/// Time when its wall goes, in us.
+/// Time when the wall disappears, in us.
 const GOES: u64 = 3_000_000;
 
 /// Distance over which readings that fit lead the belief of sensor 0 after its wall has gone, in mm, and for how long,

@@ -1,4 +1,4 @@
-//! Two to six robots of one make, for which nothing is set, standing, facing each other, and driving.
+//! Two to six robots of one make, without any setting against each other: standing, facing each other, and driving.
 
 use eeruf_core::Micros;
 use eeruf_sim::experiments::set_three::{Arrangement, Placing};
@@ -14,7 +14,7 @@ type Error = Box<dyn std::error::Error + Send + Sync>;
 /// The simulated time, in seconds.
 const SECONDS: f64 = 8.0;
 
-/// Robots of a make near each other.
+/// Robots of one make near each other.
 #[derive(Clone, Copy)]
 struct Together {
     name: &'static str,
@@ -73,7 +73,7 @@ fn read(placing: &Placing, robots: Vec<Robot>, number: u64, entry: &Entry) -> Re
     Ok(entry.simulate(&world, &Options::periods(periods.ceil() as u32), &Stop::default(), |_| true)?)
 }
 
-/// The readings that a robot accepts: right echoes, others' sound, and all.
+/// Counts the readings that a robot accepts: right echoes, others' sound, and all.
 fn echoes(readings: &Readings, robot: u16) -> [f64; 3] {
     let mut counts = [0.0; 3];
     for k in (0..readings.len()).filter(|&k| readings.robot[k] == robot) {
@@ -89,7 +89,7 @@ fn echoes(readings: &Readings, robot: u16) -> [f64; 3] {
     counts
 }
 
-/// The share of others' sound in what robots accept, and the share of right echoes that each robot keeps.
+/// Returns the share of others' sound among accepted readings, and the share of right echoes that each robot keeps.
 fn run(of: Together, robot: &Robot, number: u64, entry: &Entry) -> Result<(f64, Vec<f64>), Error> {
     let placing = Placing::random(number);
     let robots = of.place(robot, &placing);

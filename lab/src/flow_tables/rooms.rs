@@ -14,7 +14,7 @@ use super::{Asked, Cell, Table, flow, usual};
 
 type Error = Box<dyn std::error::Error + Send + Sync>;
 
-/// The simulated time of a room, in seconds: standing, and moving.
+/// Simulated seconds of a room: standing, and moving.
 const STANDING_S: f64 = 20.0;
 const MOVING_S: f64 = 8.0;
 
@@ -32,7 +32,7 @@ const CONDITIONS: [Condition; 5] = [
     Condition { name: "90 degrees/s", speed_m_s: 0.0, turn_deg_s: 90.0 },
 ];
 
-/// The share of time in which the first robot is right, its right echoes a second, and the share of foreign belief.
+/// Share of time in which the first robot is right, right echoes a second, and share of foreign sound believed.
 type Run = [f64; 3];
 
 fn run(of: &Condition, robot: &Robot, kind: RoomKind, number: u64, entry: &Entry) -> Result<Run, Error> {

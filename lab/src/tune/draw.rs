@@ -1,4 +1,4 @@
-//! Pilots that are tried: the same for every method.
+//! Candidates of the search for pilots: the same for every method.
 
 use eeruf_sim::experiments::set_two::Piloting;
 use eeruf_sim::{Random, Vfh};
@@ -32,7 +32,7 @@ impl Candidate {
     }
 }
 
-/// Draws the candidates.
+/// Seed of the candidates.
 const SEED: u64 = 1991;
 
 /// The candidate of a number: the published pilot without and with the growth rate operator, then drawn ones. The pilot
@@ -68,7 +68,7 @@ fn log_between(random: &mut Random, low: f64, high: f64) -> f64 {
     libm::exp(random.between(libm::log(low), libm::log(high)))
 }
 
-/// Rounded to two digits that count.
+/// Rounds to two significant digits.
 fn two_digits(value: f64) -> f64 {
     format!("{value:.1e}").parse().unwrap_or(value)
 }

@@ -1,4 +1,4 @@
-//! Record of what was tried already, in a file: a search that was stopped takes up where it was.
+//! Record of scores in a file: a stopped search continues from it.
 
 use std::collections::HashMap;
 use std::fs::{self, File, OpenOptions};
@@ -9,7 +9,7 @@ use eeruf_sim::Method;
 
 use super::score::{Round, Score};
 
-/// Owner of a score: method, round, number of the candidate.
+/// Key of a score: method, round, number of the candidate.
 type Key = (String, usize, usize);
 
 /// All scores so far.
@@ -37,7 +37,7 @@ impl Log {
         Ok(Self { scores, file })
     }
 
-    /// The score of a candidate, from the log or else from a run that is then kept.
+    /// Returns the score of a candidate from the log, or else from a run, which is then stored.
     pub(crate) fn score<E: From<io::Error>>(
         &mut self,
         (method, round, number): (Method, usize, usize),

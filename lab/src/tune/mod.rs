@@ -47,7 +47,7 @@ pub(crate) fn main(arguments: &[String]) -> crate::Answer {
     put(PILOTS, &pilots(Path::new(FOLDER))?, check)
 }
 
-/// The text with the line of the constant replaced.
+/// Returns the text with the constant's line replaced.
 fn with_line(text: &str, line: &str) -> String {
     let lines = text.lines().map(|old| if old.starts_with(LINE) { line } else { old });
     lines.flat_map(|line| [line, "\n"]).collect()

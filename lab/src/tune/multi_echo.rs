@@ -5,12 +5,12 @@ use eeruf_sim::experiments::ExperimentError;
 use eeruf_sim::experiments::set_one::{MultiEcho, SetOneOptions, set_one};
 use eeruf_sim::{Entry, Method, Physics};
 
-/// On how many alcoves, from 0 on.
+/// Number of alcoves, from 0 on.
 const ALCOVES: u64 = 100;
 const CONSECUTIVE: [u8; 3] = [2, 3, 4];
 const T_DELTA_US: [u32; 4] = [100, 200, 300, 500];
 
-/// The line of the source.
+/// Returns the line of the source.
 pub(crate) fn line() -> Result<String, ExperimentError> {
     let mut best = None;
     for consecutive in CONSECUTIVE {
@@ -26,7 +26,7 @@ pub(crate) fn line() -> Result<String, ExperimentError> {
     Ok(best.map_or_else(String::new, |(_, setting)| printed(setting)))
 }
 
-/// Errors and losses together, as shares: of the median alcove and of the one that one in ten exceeds.
+/// Returns errors plus losses as shares, of the median alcove and of the 90th percentile.
 fn cost(multi_echo: MultiEcho, seeds: u64) -> Result<f64, ExperimentError> {
     let methods = Entry::all([Method::MultiEcho]);
     let asked = SetOneOptions {

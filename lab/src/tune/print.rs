@@ -1,11 +1,11 @@
-//! The result, as the source of `eeruf-sim` has it.
+//! Prints the result as source text of `eeruf-sim`.
 
 use eeruf_sim::Method;
 
 use super::score::Round;
 use super::search::Tuned;
 
-/// The file.
+/// Returns the file's text.
 pub(crate) fn source(rounds: &[Round], found: &[(Method, Tuned)]) -> String {
     let mut text = String::from(
         "//! The pilots that `cargo lab tune` found, one for each method; it prints this file: change none by hand.\n\
@@ -37,7 +37,7 @@ pub(crate) fn source(rounds: &[Round], found: &[(Method, Tuned)]) -> String {
     text + "];\n"
 }
 
-/// One method's line.
+/// Returns one method's line.
 pub(crate) fn row(method: Method, tuned: &Tuned) -> String {
     let Tuned { pilot, score, .. } = tuned;
     let [alone, behind, ahead] = score.finished;

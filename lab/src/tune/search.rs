@@ -17,7 +17,7 @@ use super::score::{Round, Score};
 pub(crate) struct Tuned {
     pub(crate) number: usize,
     pub(crate) pilot: Candidate,
-    /// In the last round.
+    /// Score in the last round.
     pub(crate) score: Score,
 }
 
@@ -29,7 +29,7 @@ pub(crate) struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// The pilot that is best in the last round; the first of equals.
+    /// Returns the pilot that is best in the last round; the first of equals.
     pub(crate) fn run(&self, log: &mut Log) -> Result<Tuned, Trouble> {
         let mut left: Vec<usize> = (0..self.rounds.first().map_or(0, |round| round.pilots)).collect();
         let mut best = None;
@@ -51,7 +51,7 @@ impl Search<'_> {
         Ok(Tuned { number, pilot: candidate(number), score })
     }
 
-    /// A pilot's score on some courses.
+    /// Returns a pilot's score on some courses.
     fn drive(&self, pilot: usize, first: u64, courses: u64) -> Result<Score, Trouble> {
         let mut score = Score { finished: [0; 3], time_s: 0.0 };
         let places = [None, Some(SECOND_BEHIND), Some(SECOND_AHEAD)];

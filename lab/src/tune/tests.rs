@@ -1,4 +1,4 @@
-//! The search on a few courses, and the source as it is printed.
+//! Tests of the search on a few courses, and of the source as it is printed.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -90,7 +90,7 @@ fn pilots_in_the_source_are_as_printed() {
     }
 }
 
-/// Contents of a line of the source: the candidate, and how often it finished.
+/// Reads a line of the source: the candidate, and how often it finished.
 fn read(method: Method, line: &str) -> Tuned {
     let finished = line.rsplit_once("// ").unwrap().1.split(", ").map(|count| count.parse().unwrap());
     let finished: Vec<u32> = finished.collect();

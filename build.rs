@@ -4,7 +4,7 @@
 use std::path::Path;
 use std::process::Command;
 
-/// Made for a release by `cargo xtask notices`, and no part of the repository.
+/// Written by `cargo xtask notices` for a release; not part of the repository.
 const NOTICES: &str = "LICENSE-THIRD-PARTY.txt";
 
 fn main() {
@@ -22,7 +22,7 @@ fn main() {
     std::fs::write(taken, notices.as_deref().unwrap_or(without)).expect("a folder to write into");
 }
 
-/// The commit: of the tarball as cargo noted it there, else of the clone; none where neither is at hand.
+/// Returns the commit: cargo's note of it in a tarball, else the clone's; `None` without either.
 fn commit() -> Option<String> {
     if let Ok(noted) = std::fs::read_to_string(".cargo_vcs_info.json") {
         // Named only where it is: a file that is missing counts as changed, and all would be rebuilt each time.

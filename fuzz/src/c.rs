@@ -1,4 +1,4 @@
-//! The C library and the crates: whatever the bytes make up happens to a ring in both, and both say the same.
+//! The C library against the crates: both get a ring with the same random events, and must agree.
 
 use eeruf_c_equal::{Random, flow, modules, ring};
 

@@ -6,7 +6,7 @@ use eeruf_core::{EchoFilter, Micros, ReadingKind};
 /// The most echoes that a sensor reports of one firing here.
 const ECHOES: usize = 3;
 
-/// Input that the fuzzer makes up.
+/// Random input.
 #[derive(Arbitrary, Debug)]
 pub struct Firings {
     t_delta: u16,
@@ -35,8 +35,8 @@ fn near(t_delta: u16, echo: u32, previous: u32, expected: i32) -> bool {
     (i128::from(echo) - i128::from(previous) - i128::from(expected)).abs() <= i128::from(t_delta)
 }
 
-/// Number of consecutive firings, the last included, that hold an echo near-identical to that of the one before, and
-/// end with `echo`.
+/// Returns the number of consecutive firings, the last included, each with an echo near-identical to one of the firing
+/// before, that end with `echo`.
 fn run(t_delta: u16, firings: &[Heard], echo: u32) -> usize {
     let [before @ .., last] = firings else { return 0 };
     let previous = before.last().map_or(&[][..], |heard| &heard.echoes);
@@ -44,7 +44,7 @@ fn run(t_delta: u16, firings: &[Heard], echo: u32) -> usize {
     1 + longest.map(|&previous| run(t_delta, before, previous)).max().unwrap_or(0)
 }
 
-/// Verdict that the filter should give: the kind and the echo time.
+/// Returns the verdict that the filter should give: the kind and the echo time.
 fn naive(t_delta: u16, consecutive: usize, firings: &[Heard]) -> (ReadingKind, Option<u32>) {
     // Only this many firings matter, and a run through more of them branches.
     let firings = &firings[firings.len().saturating_sub(consecutive)..];

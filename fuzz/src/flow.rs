@@ -16,7 +16,7 @@ use eeruf_core::{
 
 use crate::ring::{Echo, Lines, SENSORS, Step, explain, instant, time_of};
 
-/// Input that the fuzzer makes up.
+/// Random input.
 #[derive(Arbitrary, Debug)]
 pub struct Input {
     /// Reading of the clock at the start; it wraps soon after the larger values.
@@ -42,28 +42,28 @@ pub enum Kind {
     Plain,
     /// Rings that take three echoes a firing.
     Echoes,
-    /// Some fire together, some share an echo line.
+    /// Rings in which some sensors fire together and some share an echo line.
     Uneven {
         together: u8,
         line: u8,
         window: u16,
     },
-    /// m of n readings.
+    /// Rings that believe m of n readings.
     Votes {
         m: u8,
         n: u8,
     },
 }
 
-/// Rule of a judge's belief.
+/// Rule by which a judge believes.
 #[derive(Clone, Copy)]
 struct Believes {
-    /// Readings that must agree, and of how many.
+    /// Number of readings that must agree, and of how many.
     m: usize,
     n: usize,
     /// The most by which a reading that fits a belief may differ from it; `None` for a judge without belief.
     near: Option<Micros>,
-    /// The robot stands, and is known to.
+    /// True if the robot stands and the ring knows it.
     stands: bool,
 }
 
@@ -156,7 +156,7 @@ struct Model<U, J, const E: usize, const H: usize> {
     last: Option<(usize, u64)>,
     restarted: u64,
     period: u32,
-    /// Time when it was last polled: what was due then is done.
+    /// Time of the last poll: everything due by then is done.
     polled: u64,
 }
 
@@ -261,7 +261,7 @@ impl<U: OwnLimits, J: Judge, const E: usize, const H: usize> Model<U, J, E, H> {
         false
     }
 
-    /// The last firing came later or sooner than its poll, where that came now and nothing was heard or said of it yet.
+    /// Reports when the last firing really was, if its poll was just now and nothing was heard of it yet.
     fn fired(&mut self, by: u8) {
         let Some((x, at)) = self.last.filter(|&(x, at)| at == self.lines.now && self.lines.sensors[x].is_silent())
         else {
@@ -287,7 +287,7 @@ impl<U: OwnLimits, J: Judge, const E: usize, const H: usize> Model<U, J, E, H> {
         }
     }
 
-    /// Polls until there is nothing more to do or to say.
+    /// Polls until nothing is left to do or to report.
     fn drain(&mut self) {
         let at = instant(self.lines.now);
         for turn in 0.. {
@@ -398,7 +398,7 @@ impl<U: OwnLimits, J: Judge, const E: usize, const H: usize> Model<U, J, E, H> {
         (sensor.is_held, sensor.emitted) = (is_held, Some(open));
     }
 
-    /// Holds what is believed for the readings before against all firings that there were.
+    /// Checks each belief of the earlier readings against all firings.
     fn believe(&self, reading: &Reading, t_echo: u32, now: &Heard, believed: Option<Micros>) {
         let (y, of) = (usize::from(reading.sensor), self.believes);
         let fits = match (of.near, believed) {

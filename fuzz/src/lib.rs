@@ -1,4 +1,4 @@
-//! Fuzz targets: each module takes whatever the fuzzer makes up and panics where a promise is broken.
+//! Fuzz targets: each module takes random input and panics if a promise is broken.
 //!
 //! The targets in `fuzz_targets` only call these, so that a finding can be replayed by an ordinary test. Readers of
 //! files take the file itself, so that any file of the repository is a seed.
@@ -23,7 +23,7 @@ fn one_line(error: &str) {
     assert!(!error.is_empty() && !error.contains('\n'), "{error:?}");
 }
 
-/// A folder of this process for what is read by its path; in memory where the machine has such a place.
+/// Returns a folder of this process for files read by path; in memory if the machine offers that.
 #[allow(dead_code)]
 fn folder() -> std::path::PathBuf {
     let memory = std::path::Path::new("/dev/shm");

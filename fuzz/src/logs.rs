@@ -1,5 +1,5 @@
-//! Logs of robots: CSV, logs of firings, and bags, recognised as the program recognises them. Whatever stands in one,
-//! each reading is of a sensor that is known by then, and what cannot be read is said in one line.
+//! Logs of robots: CSV, logs of firings, and bags, recognised as the program recognises them. Each reading must be of a
+//! known sensor, and each error take one line.
 
 use std::fs;
 use std::io::Write;
@@ -64,7 +64,7 @@ fn said(report: &Report) {
     assert_eq!(report.names().len(), report.sensors.len());
 }
 
-/// Reads a table in the ways that its header allows, and as a log of firings.
+/// Reads a table in each way that its header allows, and as a log of firings.
 pub fn tables(bytes: &[u8]) {
     let file = Path::new("file");
     let header = bytes.split(|&byte| byte == b'\n').next().unwrap_or_default();
@@ -121,7 +121,7 @@ fn rows(bytes: &[u8], file: &Path, options: &Options) {
     }
 }
 
-/// An error of a line that there is.
+/// Returns the line of an error that names one.
 fn line(error: &eeruf_files::FileError, bytes: &[u8]) {
     let lines = bytes.iter().filter(|&&byte| matches!(byte, b'\n' | b'\r')).count() as u64 + 1;
     assert!(error.line().is_none_or(|line| line <= lines), "{error} of {lines} lines");

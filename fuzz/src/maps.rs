@@ -10,7 +10,7 @@ use crate::one_line;
 
 static FOLDER: LazyLock<PathBuf> = LazyLock::new(crate::folder);
 
-/// The most cells whose outlines are followed.
+/// The largest number of cells whose outlines are followed.
 const MOST: usize = 10_000;
 
 /// Reads the map, and turns it into walls.

@@ -29,7 +29,7 @@ use self::model::{Listening, Model};
 /// Sensors of the ring.
 pub const SENSORS: usize = 5;
 
-/// Input that the fuzzer makes up.
+/// Random input.
 #[derive(Arbitrary, Debug)]
 pub struct Input {
     /// Reading of the clock at the start; it wraps soon after the larger values.
@@ -49,19 +49,18 @@ pub struct Table {
     pub fire: [[u8; SENSORS]; 2],
 }
 
-/// Something that happens to the ring.
+/// An event for the ring.
 #[derive(Arbitrary, Debug)]
 pub enum Step {
     /// Sleep until the next deadline, then this many microseconds more, and poll.
     Sleep {
         late: Option<u16>,
     },
-    /// Let so much time pass, in units of 64 us, and poll; deadlines may pass unseen.
+    /// Let this time pass, in units of 64 us, and poll; deadlines may be missed.
     Pass(u16),
     /// Let a minute or two pass.
     PassLong(u8),
-    /// An edge that was seen this many microseconds ago, and may have come so much sooner; it may be taken back for a
-    /// while.
+    /// An edge seen this many microseconds ago, which may have come this much sooner; it may be taken back for a while.
     Edge {
         sensor: u8,
         ago: u16,
@@ -111,7 +110,7 @@ pub(crate) fn time_of(instant_: Instant, now: u64) -> u64 {
     now.saturating_add_signed(ahead.into())
 }
 
-/// Does all steps with the ring and the model.
+/// Runs all steps on the ring and the model.
 pub fn check(input: &Input) {
     let (Some(first), Some(second)) = (table(&input.tables[0]), table(&input.tables[1])) else { return };
     let [t_delta, window, blanking] =
@@ -273,7 +272,7 @@ pub fn check(input: &Input) {
     }
 }
 
-/// Polls until there is nothing more to do or to say.
+/// Polls until nothing is left to do or to report.
 fn drain(ring: &mut ScheduledRing<'_, SENSORS>, model: &mut Model<'_>, expected: i32) {
     let now = model.lines.now;
     for turn in 0.. {

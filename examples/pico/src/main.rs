@@ -68,7 +68,7 @@ impl<P: Instance, const N: usize> Fifos for StateMachine<'_, P, N> {
     }
 }
 
-/// A state machine for each module.
+/// The state machines, one for each module.
 struct Modules<'m> {
     machines: [&'m mut dyn Fifos; SENSORS],
     lines: [PioLine; SENSORS],

@@ -1,4 +1,4 @@
-//! Needs of the ring from an ATmega328P at 16 MHz: pins, a clock in microseconds, a serial line, and its interrupts.
+//! Support for the ring on an ATmega328P at 16 MHz: pins, a clock in microseconds, a serial line, and its interrupts.
 //! The registers stand where the data sheet puts them ("Register Summary"), as addresses in memory.
 
 use core::cell::Cell;
@@ -10,7 +10,7 @@ use eeruf_core::{Edge, EdgeQueue, Instant};
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
 
-/// A register of eight bits.
+/// An 8-bit register.
 #[derive(Clone, Copy)]
 struct Register(u16);
 
@@ -31,7 +31,7 @@ impl Register {
     }
 }
 
-/// A port's pins, directions and outputs lie one after the other.
+/// A port: its registers for input, direction and output follow one another.
 #[derive(Clone, Copy)]
 struct Port(u16);
 
@@ -67,14 +67,14 @@ const UCSR0B: Register = Register(0xc1);
 const UBRR0L: Register = Register(0xc4);
 const UDR0: Register = Register(0xc6);
 
-/// The flag in `SREG` that lets interrupts in.
+/// The bit in `SREG` that enables interrupts.
 const INTERRUPTS: u8 = 0x80;
-/// The flag in `TIFR1`, and the one in `TIMSK1`: the timer has wrapped.
+/// The bit in `TIFR1` and in `TIMSK1` for an overflow of the timer.
 const WRAPPED: u8 = 1;
-/// The flag in `UCSR0A`: `UDR0` takes a byte.
+/// The bit in `UCSR0A` that says `UDR0` can take a byte.
 const SENT: u8 = 0x20;
 
-/// The timer counts half microseconds in 16 bits, this how often it has wrapped.
+/// Number of overflows of the timer, which counts half microseconds in 16 bits.
 struct Wraps(Cell<u32>);
 
 // SAFETY: there is one core, and the value is touched with interrupts off.
@@ -82,10 +82,10 @@ unsafe impl Sync for Wraps {}
 
 static WRAPS: Wraps = Wraps(Cell::new(0));
 
-/// From the interrupts to the main loop.
+/// Edges from the interrupts to the main loop.
 pub(crate) static EDGES: EdgeQueue<16> = EdgeQueue::new();
 
-/// The levels of the echo lines at the last interrupt: those of port B, and those of port C.
+/// The levels of the echo lines at the last interrupt, on port B and on port C.
 struct Levels([Cell<u8>; 2]);
 
 // SAFETY: only the two interrupts of the ports touch it, and neither interrupts the other.
@@ -97,7 +97,7 @@ static LEVELS: Levels = Levels([Cell::new(0), Cell::new(0)]);
 const ECHOES_B: u8 = 0b11_1100;
 const ECHOES_C: u8 = 0b00_1111;
 
-/// Pins, timer and serial line; then interrupts are let in.
+/// Sets up pins, timer and serial line, then enables interrupts.
 pub(crate) fn start() {
     Port::D.directions().set(0b1111_1100, true);
     Port::B.directions().set(0b0000_0011, true);
@@ -114,7 +114,7 @@ pub(crate) fn start() {
     SREG.set(INTERRUPTS, true);
 }
 
-/// The clock.
+/// Reads the clock.
 pub(crate) fn now() -> Instant {
     let before = SREG.read();
     SREG.write(before & !INTERRUPTS);
@@ -125,7 +125,7 @@ pub(crate) fn now() -> Instant {
     time
 }
 
-/// The clock, with interrupts off.
+/// Reads the clock with interrupts disabled.
 fn stamp() -> Instant {
     // Reading the lower half keeps the upper one.
     let low = TCNT1L.read();
@@ -136,7 +136,7 @@ fn stamp() -> Instant {
     Instant::from_micros(wraps << 15 | u32::from(count >> 1))
 }
 
-/// The lines of a port that differ from before go into the queue; the first of them is this sensor's.
+/// Queues an edge for each line of a port whose level has changed; the first line is this sensor's.
 fn edges(port: Port, lines: u8, levels: &Cell<u8>, first: u8) {
     let at = stamp();
     let now = port.pins().read() & lines;
@@ -152,19 +152,19 @@ fn edges(port: Port, lines: u8, levels: &Cell<u8>, first: u8) {
     }
 }
 
-/// An edge on port B.
+/// Handles an edge on port B.
 #[unsafe(no_mangle)]
 extern "avr-interrupt" fn __vector_3() {
     edges(Port::B, ECHOES_B, &LEVELS.0[0], 0);
 }
 
-/// An edge on port C.
+/// Handles an edge on port C.
 #[unsafe(no_mangle)]
 extern "avr-interrupt" fn __vector_4() {
     edges(Port::C, ECHOES_C, &LEVELS.0[1], 4);
 }
 
-/// The timer has wrapped.
+/// Handles an overflow of the timer.
 #[unsafe(no_mangle)]
 extern "avr-interrupt" fn __vector_13() {
     WRAPS.0.set(WRAPS.0.get().wrapping_add(1));
@@ -186,7 +186,7 @@ pub(crate) struct Pin {
 }
 
 impl Pin {
-    /// The trigger of a sensor: pins 2 to 9.
+    /// Returns the trigger pin of a sensor: pins 2 to 9.
     pub(crate) const fn trigger(sensor: u8) -> Self {
         if sensor < 6 {
             Self { port: Port::D, bit: 4 << sensor }
@@ -195,7 +195,7 @@ impl Pin {
         }
     }
 
-    /// The echo line of a sensor.
+    /// Returns the echo line of a sensor.
     pub(crate) const fn echo(sensor: u8) -> Self {
         if sensor < 4 {
             Self { port: Port::B, bit: 4 << sensor }
@@ -231,7 +231,7 @@ impl InputPin for Pin {
     }
 }
 
-/// Waits by the clock.
+/// A delay that waits by the clock.
 pub(crate) struct Wait;
 
 impl DelayNs for Wait {

@@ -26,7 +26,7 @@ const PINS: [Pins<Pin, Pin>; 8] = {
 /// Bytes still to be sent.
 struct Outbox {
     bytes: [u8; Self::SIZE],
-    /// Number of bytes that were ever put in, and how many sent; both wrap.
+    /// Number of bytes ever queued, and number sent; both wrap.
     put: u8,
     sent: u8,
 }
@@ -38,7 +38,7 @@ impl Outbox {
     const LINE: u8 = 8;
     const EMPTY: Self = Self { bytes: [0; Self::SIZE], put: 0, sent: 0 };
 
-    /// Sensor and distance: `3 1234`. Where the line is too slow, what does not fit is dropped.
+    /// Queues sensor and distance, as `3 1234`. Text that does not fit, on a line that is too slow, is dropped.
     fn say(&mut self, sensor: u8, mm: u32) {
         if Self::SIZE as u8 - self.put.wrapping_sub(self.sent) < Self::LINE {
             return;

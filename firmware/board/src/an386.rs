@@ -20,7 +20,7 @@ pub(crate) const CONTROL: usize = 0x0;
 pub(crate) const INTERRUPT_CLEAR: usize = 0xC;
 pub(crate) const TIMER_TICKS_PER_US: u32 = 25;
 pub(crate) const SYSTICK_LOG2_TICKS_PER_US: u32 = 0;
-/// From the 1 MHz reference clock.
+/// The reference clock of 1 MHz.
 pub(crate) const SYSTICK_SOURCE: u32 = 0;
 
 const DUAL_TIMER: usize = 0x4000_2000;
@@ -35,7 +35,7 @@ pub fn start() {
     enable_interrupts();
 }
 
-/// Has a timer that stands run down once.
+/// Lets a stopped timer run down once.
 pub(crate) fn run_down(timer: usize, ticks: u32) {
     // Without a reload value it stops then.
     Register::at(timer, RELOAD).write(0);
@@ -43,7 +43,7 @@ pub(crate) fn run_down(timer: usize, ticks: u32) {
     Register::at(timer, CONTROL).write(0b1001);
 }
 
-/// A counter proportional to the instructions executed.
+/// Reads a counter proportional to the instructions executed.
 pub fn count() -> u32 {
     // It counts down.
     !Register::at(DUAL_TIMER, 0x4).read()

@@ -51,7 +51,7 @@ static __INTERRUPTS: [Vector; crate::chip::VECTORS] = vectors();
 pub(crate) struct Register(pub(crate) *mut u32);
 
 impl Register {
-    /// The register at this offset of a peripheral.
+    /// Returns the register at this offset of a peripheral.
     pub(crate) const fn at(base: usize, offset: usize) -> Self {
         Self((base + offset) as *mut u32)
     }
@@ -118,7 +118,7 @@ pub mod device {
         ALARM = ALARM_IRQ,
         /// An edge on an echo line.
         ECHO = ECHO_IRQ,
-        /// None of this crate's: a framework may raise it for its own purposes.
+        /// Not used by this crate; a framework may raise it.
         SPARE = SPARE_IRQ,
     }
 
@@ -129,8 +129,8 @@ pub mod device {
         }
     }
 
-    /// The interrupts under the name that RTIC looks for.
+    /// The interrupts under the name that RTIC expects.
     pub use Interrupt as interrupt;
-    /// Named as frameworks expect it; there are no further peripherals to hand out.
+    /// The peripherals under the name that frameworks expect; there are no more to hand out.
     pub use cortex_m::Peripherals;
 }

@@ -12,17 +12,17 @@ use eeruf_hc_sr04::Pins;
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
 
-/// The most sensors there can be: as many as the paper has.
+/// The largest number of sensors, that of the paper.
 pub const MAX_FAKE_SENSORS: usize = 12;
 
-/// From trigger to the rise of the line: how long an HC-SR04 sends.
+/// Time from trigger to rise of the line: the burst of an HC-SR04.
 const RISE: Micros = Micros::new(450);
 
 #[derive(Clone, Copy)]
 struct Line {
     /// Echo time of the object in front of the sensor; `None` for a sensor that is missing.
     t_echo: Option<Micros>,
-    /// The edges to come.
+    /// The coming edges.
     rise: Option<Instant>,
     fall: Option<Instant>,
     high: bool,
@@ -80,8 +80,8 @@ fn trigger(sensor: usize) {
     });
 }
 
-/// The edge that has come, if one has, as an interrupt controller would report it. The handler of the echo interrupt
-/// calls this until there is none.
+/// Returns the edge that has come, if any, like an interrupt controller. The handler of the echo interrupt calls this
+/// until there is none.
 pub fn edge() -> Option<Edge> {
     let at = crate::now();
     with(|_, sensors| {
@@ -146,7 +146,7 @@ impl InputPin for Echo {
     }
 }
 
-/// Waits by watching the clock.
+/// A delay that waits by the clock.
 #[derive(Clone, Copy, Debug)]
 pub struct Delay;
 

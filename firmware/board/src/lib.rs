@@ -48,12 +48,12 @@ pub use riscv_rt::entry;
 /// The reading of the clock at the start.
 static CLOCK_AT_START: AtomicU32 = AtomicU32::new(0);
 
-/// Starts the clock at another reading than 0, to see it wrap. To be called before the clock is read.
+/// Starts the clock at a reading other than 0, to see it wrap. Call it before the clock is read.
 pub fn begin_clock_at(start: Instant) {
     CLOCK_AT_START.store(start.as_micros(), Ordering::Relaxed);
 }
 
-/// The clock.
+/// Reads the clock.
 pub fn now() -> Instant {
     instant_of(running())
 }
@@ -79,7 +79,7 @@ macro_rules! no_panic {
     };
 }
 
-/// For images that are allowed to fail, such as tests: says where and leaves with code 101.
+/// A panic handler for images that may fail, such as tests: says where, and leaves with code 101.
 #[macro_export]
 macro_rules! say_panic {
     () => {

@@ -20,10 +20,10 @@ pub(crate) const ALARM_TIMER: usize = 0x4003_0000;
 pub(crate) const ECHO_TIMER: usize = 0x4003_1000;
 pub(crate) const CONTROL: usize = 0x00C;
 pub(crate) const INTERRUPT_CLEAR: usize = 0x024;
-/// 200 MHz / 50, for timers and SysTick alike.
+/// Ticks per microsecond of timers and SysTick: 200 MHz / 50.
 pub(crate) const TIMER_TICKS_PER_US: u32 = 4;
 pub(crate) const SYSTICK_LOG2_TICKS_PER_US: u32 = 2;
-/// From the core's clock.
+/// The core's clock.
 pub(crate) const SYSTICK_SOURCE: u32 = 0b100;
 
 const RCC2: Register = Register::at(0x400F_E000, 0x070);
@@ -65,13 +65,13 @@ pub fn start() {
     enable_interrupts();
 }
 
-/// Has a timer that stands run down once.
+/// Lets a stopped timer run down once.
 pub(crate) fn run_down(timer: usize, ticks: u32) {
     Register::at(timer, LOAD_A).write(ticks);
     Register::at(timer, CONTROL).write(1);
 }
 
-/// A counter proportional to the instructions executed; it has 24 bits.
+/// Reads a counter of 24 bits proportional to the instructions executed.
 pub fn count() -> u32 {
     systick_clock::ticks()
 }

@@ -49,7 +49,7 @@ fn capture(timer: usize) -> u32 {
     Register::at(timer, CC_1).read()
 }
 
-/// The time since the start.
+/// Returns the time since the start.
 pub(crate) fn running() -> Micros {
     Micros::new(capture(TIMER0))
 }
@@ -88,7 +88,7 @@ pub fn clear_echo() {
     Register::at(TIMER1, COMPARE_0).write(0);
 }
 
-/// A counter proportional to the instructions executed.
+/// Reads a counter proportional to the instructions executed.
 pub fn count() -> u32 {
     capture(TIMER2)
 }

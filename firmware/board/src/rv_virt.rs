@@ -64,7 +64,7 @@ fn ticks() -> u64 {
     }
 }
 
-/// The time since the start.
+/// Returns the time since the start.
 pub(crate) fn running() -> Micros {
     Micros::new((ticks() / TICKS_PER_US) as u32)
 }
@@ -87,7 +87,7 @@ impl Timers {
     }
 }
 
-/// Returns which of alarm and echo has come; for the handler.
+/// Returns which of alarm and echo has come, for the handler.
 pub fn due() -> (bool, bool) {
     critical_section::with(|token| {
         let timers = TIMERS.borrow(token);
@@ -129,7 +129,7 @@ pub fn set_echo(at: Instant) {
 /// Clears the echo interrupt for its handler; here [`due`] has done it.
 pub fn clear_echo() {}
 
-/// The instructions executed.
+/// Reads the number of instructions executed.
 pub fn count() -> u32 {
     riscv::register::minstret::read() as u32
 }

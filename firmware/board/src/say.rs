@@ -1,11 +1,11 @@
-//! Speaking through the debugger (semihosting), without `core::fmt`, whose formatting can panic and takes kilobytes.
+//! Output through the debugger (semihosting), without `core::fmt`, whose formatting can panic and takes kilobytes.
 
 use core::fmt::Write;
 use core::panic::PanicInfo;
 
-/// Something that can be said in one line.
+/// A value that can be written on one line.
 pub trait Say {
-    /// Says it.
+    /// Writes it.
     fn say(&self);
 }
 
@@ -67,7 +67,7 @@ impl Say for i32 {
     }
 }
 
-/// Says some values, one after the other, and ends the line.
+/// Writes some values one after the other, and ends the line.
 #[macro_export]
 macro_rules! say {
     ($($what:expr),* $(,)?) => {{

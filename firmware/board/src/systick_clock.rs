@@ -37,7 +37,7 @@ pub(crate) fn ticks() -> u32 {
     0x00FF_FFFF_u32.wrapping_sub(SYSTICK_CURRENT.read()) & 0x00FF_FFFF
 }
 
-/// The time since the start.
+/// Returns the time since the start.
 pub(crate) fn running() -> Micros {
     critical_section::with(|token| {
         let clock = CLOCK.borrow(token);

@@ -30,7 +30,7 @@ fn echo_interrupt() {
     EDGE.signal(());
 }
 
-/// The low 32 bits of embassy's clock.
+/// Returns the low 32 bits of embassy's clock.
 fn now() -> Instant {
     Instant::from_micros(embassy_time::Instant::now().as_micros() as u32)
 }

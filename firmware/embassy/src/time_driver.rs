@@ -9,7 +9,7 @@ use embassy_time_driver::Driver;
 use embassy_time_queue_utils::Queue;
 
 struct BoardTime {
-    /// The clock of 64 bits that embassy wants, at the last reading.
+    /// The 64-bit clock that embassy needs, at the last reading.
     clock_us: Mutex<Cell<u64>>,
     queue: Mutex<RefCell<Queue>>,
 }
@@ -50,7 +50,7 @@ impl Driver for BoardTime {
     }
 }
 
-/// The alarm's interrupt: wakes what is due.
+/// Handles the alarm's interrupt: wakes the tasks that are due.
 pub(crate) fn alarm() {
     eeruf_board::clear_alarm();
     critical_section::with(|token| {

@@ -1,5 +1,5 @@
-//! The host, by the debugger's file access: records go to the emulator's standard output, answers come from its
-//! standard input. The emulated time stands still while we wait for them.
+//! The host, reached through the debugger's file access: records go to the emulator's standard output, answers come
+//! from its standard input. Emulated time stands still during the wait.
 
 use core::cell::RefCell;
 
@@ -24,7 +24,7 @@ struct Pipes {
 }
 
 impl Host {
-    /// Asks for orders.
+    /// Opens the pipes and reads the orders.
     pub(crate) fn open() -> (Self, Orders) {
         let (Ok(mut input), Ok(output)) = (File::open(c"/dev/stdin"), File::create(c"/dev/stdout")) else {
             say!("no host: this program runs under eeruf-hil");
@@ -36,7 +36,7 @@ impl Host {
         (Self(RefCell::new(pipes)), Orders::from_words(words.map(u32::from_le_bytes)))
     }
 
-    /// Says something, at the latest when the buffer is full.
+    /// Queues a record, which is sent when the buffer is full at the latest.
     pub(crate) fn say(&self, record: Record) {
         let mut pipes = self.0.borrow_mut();
         if pipes.count == KEPT {
@@ -47,12 +47,12 @@ impl Host {
         pipes.count += 1;
     }
 
-    /// Says at once what is not yet said.
+    /// Sends the queued records.
     pub(crate) fn flush(&self) {
         self.0.borrow_mut().flush();
     }
 
-    /// Says that a sensor has been triggered, and waits for all edges that are to come: two words for each.
+    /// Reports that a sensor has been triggered, and waits for all coming edges: two words for each.
     pub(crate) fn trigger<'b>(
         &self,
         sensor: u8,

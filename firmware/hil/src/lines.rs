@@ -11,13 +11,13 @@ use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
 use crate::host::Host;
 
 struct Lines {
-    /// The edges to come, soonest first, from `next` to `count`.
+    /// The coming edges, soonest first, from `next` to `count`.
     ahead: [Ahead; MOST_AHEAD],
     next: usize,
     count: usize,
     /// True for each line that is high.
     high: [bool; SENSORS],
-    /// Edges up to here have come.
+    /// Instant up to which edges have been played.
     played: Instant,
 }
 
@@ -35,7 +35,7 @@ fn with<R>(f: impl FnOnce(&mut Lines) -> R) -> R {
     critical_section::with(|token| f(&mut LINES.borrow_ref_mut(token)))
 }
 
-/// Nothing has happened before `now`.
+/// Begins at `now`, without edges.
 pub(crate) fn begin(now: Instant) {
     with(|lines| lines.played = now);
 }
@@ -47,7 +47,7 @@ impl Lines {
         }
     }
 
-    /// The edge that has come, if one has and its interrupt is not lost.
+    /// Returns the edge that has come, if there is one and its interrupt is not lost.
     fn edge(&mut self) -> Option<Edge> {
         let now = eeruf_board::now();
         while self.next < self.count {
@@ -66,7 +66,7 @@ impl Lines {
         None
     }
 
-    /// Replaces the edges to come by the host's answer, which may also hold edges that have come already.
+    /// Replaces the coming edges by the host's answer, which may also hold past edges.
     fn replace(&mut self, ahead: impl Iterator<Item = Ahead>) {
         self.next = 0;
         self.count = 0;
@@ -80,8 +80,8 @@ impl Lines {
     }
 }
 
-/// The edge that has come, if one has, as an interrupt controller would report it. The handler of the echo interrupt
-/// calls this until there is none.
+/// Returns the edge that has come, if any, like an interrupt controller. The handler of the echo interrupt calls this
+/// until there is none.
 pub(crate) fn edge() -> Option<Edge> {
     with(Lines::edge)
 }

@@ -31,7 +31,7 @@ pub const fn plain<const K: usize>() -> VerifiedSchedule<K> {
     }
 }
 
-/// The `t_delta` of all that is measured.
+/// The `t_delta` of all measurements.
 pub const T_DELTA: Micros = Micros::new(999);
 
 /// The configuration of all measured rings.
@@ -46,18 +46,18 @@ pub struct Range {
 }
 
 impl Range {
-    /// Nothing measured.
+    /// Makes a range without a measurement.
     pub const fn new(name: &'static str) -> Self {
         Self { name, fewest: u32::MAX, most: 0 }
     }
 
-    /// One more call, which took this many counts of the board's counter.
+    /// Adds a call that took this many counts of the board's counter.
     pub fn note(&mut self, counts: u32) {
         self.fewest = self.fewest.min(counts);
         self.most = self.most.max(counts);
     }
 
-    /// One line: name, fewest, most. Reading the counter itself does not count.
+    /// Prints one line: name, fewest, most, without the cost of reading the counter.
     pub fn say(&self) {
         let nothing = (0..4).map(|_| counts(|| black_box(())).0).min().unwrap_or(0);
         let instructions = |counts: u32| {
@@ -69,7 +69,7 @@ impl Range {
     }
 }
 
-/// The counts of the board's counter that a call takes, and what it returns.
+/// Returns the counts of the board's counter that a call takes, and its result.
 pub fn counts<R>(call: impl FnOnce() -> R) -> (u32, R) {
     let before = eeruf_board::count();
     let result = call();

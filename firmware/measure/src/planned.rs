@@ -1,4 +1,4 @@
-//! Flow rings: what each call takes, and programs that have one in static memory.
+//! Flow rings: the cost of each call, and programs with a ring in static memory.
 
 use core::hint::black_box;
 
@@ -10,7 +10,7 @@ use eeruf_core::{
 
 use crate::{Range, counts};
 
-/// The flow ring of all that is measured.
+/// Makes the flow ring of all measurements.
 ///
 /// # Errors
 /// As [`FlowRing::flow`].
@@ -35,8 +35,8 @@ fn moving(ring: &mut FlowRing<12>, speed_mm_s: u32, now: Instant) {
     ring.moving(speed_mm_s, 0, now);
 }
 
-/// After how long a sensor hears something, if it does: of 12, four always see a wall, four are fooled in every second
-/// period, three hear noise, and one hears nothing.
+/// Returns the echo time of a sensor, if it hears anything: of 12, four always see a wall, four are fooled in every
+/// second period, three hear noise, and one hears nothing.
 fn t_echo(sensor: u8, period: u32, noise: u32) -> Option<u32> {
     match sensor {
         0..4 => Some(9_000 + 1_000 * u32::from(sensor)),

@@ -1,5 +1,5 @@
-//! A ring of twelve HC-SR04 sensors on bare metal. The echo interrupt only time-stamps; the main loop is that of the
-//! library.
+//! A ring of twelve HC-SR04 sensors on bare metal. The echo interrupt only takes time stamps; the main loop is the
+//! library's.
 #![no_std]
 #![no_main]
 
@@ -14,7 +14,7 @@ use eeruf_ring::run;
 eeruf_board::no_panic!();
 eeruf_board::interrupts!(eeruf_board::clear_alarm, echo_interrupt);
 
-/// From the echo interrupt to the main loop.
+/// Edges from the echo interrupt to the main loop.
 static EDGES: EdgeQueue<32> = EdgeQueue::new();
 
 fn echo_interrupt() {

@@ -39,7 +39,7 @@ mod app {
         (Shared {}, Local { ring, readings: Tally::default() })
     }
 
-    /// Asleep whenever no task runs.
+    /// Sleeps while no task runs.
     #[idle]
     fn idle(_: idle::Context) -> ! {
         loop {

@@ -1,4 +1,4 @@
-//! Events that the ring may emit, derived from what happened to it.
+//! Events that the ring may emit, derived from its inputs.
 
 use eeruf_core::{
     Instant, Micros, PeriodStats, Phase, Reading, ReadingKind, Ring, Schedule, SensorError, Silence, Tally,
@@ -11,22 +11,22 @@ use super::{SENSORS, Step};
 /// True if a restart keeps the intervals between different sensors too.
 const RESTARTS_KEEP_INTERVALS: bool = true;
 
-/// Error of the ring's stamps at most, in microseconds.
+/// Largest error of the ring's time stamps, in microseconds.
 const STAMPS: u64 = 64;
 
 /// A reading that counts in comparisons.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Heard {
-    /// `Some(None)` stands for silence, `None` for nothing known.
+    /// The echo; `Some(None)` for silence, `None` if unknown.
     echo: Option<Option<u32>>,
     /// Time when it fired.
     fired: u64,
     t_delta: u32,
-    /// Something foreign explains it together with the one before.
+    /// True if foreign sound explains it together with the one before.
     ambiguous: bool,
     /// The change that odometry expects since the one before.
     expected: i32,
-    /// The time by which the echo may be off.
+    /// The possible error of the echo.
     off: u32,
 }
 
@@ -42,7 +42,7 @@ impl Heard {
     }
 }
 
-/// Word of the driver on a firing.
+/// The driver's evidence on a firing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Evidence {
     Listened,
@@ -51,7 +51,7 @@ pub(crate) enum Evidence {
     Stuck,
 }
 
-/// A firing whose reading is not yet out.
+/// A firing whose reading is not yet emitted.
 #[derive(Clone, Debug)]
 pub(crate) struct Open {
     pub(crate) at: u64,
@@ -61,7 +61,7 @@ pub(crate) struct Open {
     pub(crate) echoes: Vec<u32>,
     pub(crate) early: Option<u32>,
     pub(crate) evidence: Evidence,
-    /// The time by which the echoes may be off, in units of 2 us; [`WIDE`] if too much.
+    /// The possible error of the echoes, in units of 2 us; [`WIDE`] if too large.
     pub(crate) off: u32,
 }
 
@@ -84,7 +84,7 @@ impl Open {
         }
     }
 
-    /// The line is held, and it has heard nothing.
+    /// Returns true if the line is held and the sensor has heard nothing.
     pub(crate) fn is_held(&self, silence: Silence) -> bool {
         self.evidence == Evidence::Held && self.echoes.is_empty() && self.unusable(silence).is_none()
     }
@@ -92,7 +92,7 @@ impl Open {
 
 pub(crate) const WIDE: u32 = 255;
 
-/// An echo: when its sensor fired, after how many microseconds it came, and by how many that may be off.
+/// An echo: when its sensor fired, after how many microseconds it came, and the possible error.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Echo {
     pub(crate) fired: u64,
@@ -132,12 +132,12 @@ pub(crate) struct Sensor {
     pub(crate) emitted: Option<Open>,
     pub(crate) late: Option<u32>,
     pub(crate) had_late: bool,
-    /// True if the sensor held its line then, and still does.
+    /// True if the sensor held its line then and still does.
     pub(crate) is_held: bool,
     pub(super) last_fired: Option<Last>,
     /// All instants at which it fired.
     pub(crate) fired: Vec<u64>,
-    /// The readings before, newest last, as far as they count.
+    /// The earlier readings that count, newest last.
     pub(super) heard: Vec<Heard>,
     /// Readings since the comparison was last disturbed.
     pub(super) undisturbed: u32,
@@ -170,7 +170,7 @@ pub(super) struct Model<'s> {
     pub(super) epoch: u32,
     /// The schedule of the epoch before.
     pub(super) before: Option<&'s Schedule<SENSORS>>,
-    /// Nothing was polled late since the last firing.
+    /// True if no poll was late since the last firing.
     pub(super) on_time: bool,
     /// Periods that have ended since something disturbed the comparison.
     pub(super) quiet_periods: u32,
@@ -198,7 +198,7 @@ pub(super) fn always_kept(schedule: &Schedule<SENSORS>, x: usize, y: usize) -> u
 }
 
 impl Sensor {
-    /// Returns true if it has fired, and nothing was heard or said since.
+    /// Returns true if it has fired and nothing was reported since.
     pub(crate) fn is_silent(&self) -> bool {
         self.open.as_ref().is_some_and(|open| open.echoes.is_empty() && open.early.is_none())
     }
@@ -212,7 +212,7 @@ impl Sensor {
         self.fired.push(at);
     }
 
-    /// Takes in evidence of the firing that is open, if there is one.
+    /// Stores evidence on the open firing, if there is one.
     pub(crate) fn shows(&mut self, evidence: Evidence) {
         if let Some(open) = self.open.as_mut().filter(|open| open.evidence != Evidence::Stuck) {
             open.evidence = evidence;
@@ -288,7 +288,7 @@ impl Sensor {
 pub(crate) struct Lines {
     pub(crate) now: u64,
     pub(crate) sensors: [Sensor; SENSORS],
-    /// Readings of this period.
+    /// Counts of readings in this period.
     pub(crate) tally: Tally<u8>,
     /// Sound that was heard need not be told before.
     pub(crate) settled: u64,
@@ -300,14 +300,14 @@ impl Lines {
         Self { now, sensors: Default::default(), tally: Tally::default(), settled: 0, silence }
     }
 
-    /// All firings are dropped.
+    /// Drops all firings.
     pub(crate) fn drop_firings(&mut self) {
         for sensor in &mut self.sensors {
             (sensor.open, sensor.emitted, sensor.late, sensor.is_held) = (None, None, None, false);
         }
     }
 
-    /// Hands in what a driver or a robot has to say. Returns false for any other step.
+    /// Passes a report of a driver or a robot to the ring. Returns false for any other step.
     pub(crate) fn hand_in<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize>(
         &mut self,
         ring: &mut Ring<P, J, K, E, H>,
@@ -481,7 +481,7 @@ impl<'s> Model<'s> {
         explain(&self.lines.sensors[x].fired, x == y, pair.map(echo), audible + slack, change + slack)
     }
 
-    /// A reading, for which odometry expected this change.
+    /// Checks a reading, for which odometry expected this change.
     pub(super) fn emitted(&mut self, reading: &Reading, expected: i32) {
         let listening = self.listening;
         let x = usize::from(reading.sensor);
@@ -656,7 +656,7 @@ impl<'s> Model<'s> {
         }
     }
 
-    /// Begins with another schedule, or with the same again.
+    /// Begins with another schedule, or again with the same one.
     pub(super) fn new_epoch(&mut self, schedule: &'s Schedule<SENSORS>) {
         self.before = Some(self.schedule);
         self.epoch += 1;
@@ -665,7 +665,7 @@ impl<'s> Model<'s> {
         self.invalidate();
     }
 
-    /// All that could be emitted has been.
+    /// Everything that could be emitted has been.
     pub(super) fn drained(&self) {
         for (x, sensor) in self.lines.sensors.iter().enumerate() {
             assert!(sensor.late.is_none() || self.lines.now < self.lines.settled, "sensor {x} has a late edge to tell");

@@ -1,4 +1,4 @@
-//! As `instructions`, for the plan alone and the filter alone: each is usable without the other.
+//! Like `instructions`, for the plan alone and the filter alone: each is usable without the other.
 #![no_std]
 #![no_main]
 

@@ -1,4 +1,4 @@
-//! As the programs `size-8`, `size-12`, `size-24`, without the ring.
+//! Like the programs `size-8`, `size-12`, `size-24`, without the ring.
 #![no_std]
 #![no_main]
 

@@ -1,4 +1,4 @@
-//! A period that `eeruf design` calls the shortest is checked by a program that shares nothing with the search.
+//! A period that `eeruf design` calls the shortest is checked by a program that shares no code with the search.
 
 use std::fs;
 use std::path::Path;
@@ -8,7 +8,7 @@ use eeruf_design::certificate::Stated;
 
 use crate::common::{Scratch, eeruf};
 
-/// Verdict of the checker on a certificate: its exit code and what it prints.
+/// Runs the checker on a certificate: its exit code and its output.
 fn python(certificate: &Path) -> (Option<i32>, String) {
     let checked =
         Command::new("python3").arg("checker/check_period.py").arg(certificate).output().expect("python3 runs");

@@ -39,7 +39,7 @@ pub(crate) fn json(args: &[&str]) -> Value {
     serde_json::from_str(&outcome.out).expect("one JSON object")
 }
 
-/// A file that is gone when this is dropped.
+/// A file that is removed when this is dropped.
 pub(crate) struct Scratch(tempfile::TempDir);
 
 impl Scratch {
@@ -58,13 +58,13 @@ impl Scratch {
 /// A compiler of C, which whoever builds Rust has.
 pub(crate) const C: &[&str] = &["gcc", "-std=c99"];
 
-/// A compiler of C++, if there is one; `cargo xtask c` is skipped, and says so, where there is none.
+/// Returns a compiler of C++, if there is one; without it `cargo xtask c` is skipped with a message.
 pub(crate) fn cpp() -> Option<&'static [&'static str]> {
     let language: &[&str] = &["g++", "-xc++", "-std=c++11"];
     Command::new(language[0]).arg("--version").output().is_ok().then_some(language)
 }
 
-/// Compiles a program, without a warning, and runs it; it ends well.
+/// Compiles a program without a warning, and runs it successfully.
 pub(crate) fn compile_and_run(folder: &Scratch, text: &str, compiler: &[&str]) {
     let (user, program) = (folder.path().join("user.c"), folder.path().join("user"));
     std::fs::write(&user, text).unwrap();

@@ -153,7 +153,7 @@ fn pictures_are_what_their_commands_draw() {
     assert!(drawn >= 10, "{drawn}");
 }
 
-/// The words of a text, as `wc -w` counts them.
+/// Counts the words of a text, like `wc -w`.
 fn words(text: &str) -> usize {
     text.split_whitespace().count()
 }
@@ -187,7 +187,7 @@ fn log_has_at_most_20_000_words() {
     assert!(words <= 20_000, "{words}; keep what other documents quote, and what was left out in a line each");
 }
 
-/// A text without the parts from one mark to another.
+/// Returns a text without the parts from one mark to another.
 fn without(text: &str, begin: &str, end: &str) -> String {
     let mut parts = text.split(begin);
     let first = parts.next().unwrap().to_owned();

@@ -1,9 +1,9 @@
-//! All texts that `eeruf design --emit` writes, by their digests: a change of a ring's source text is seen.
+//! Digests of all texts that `eeruf design --emit` writes: they show any change of a ring's source text.
 
 use crate::common::eeruf;
 use crate::started::rings;
 
-/// A line a text: its digest, then what `design` is asked.
+/// The file: a line for each text, with its digest and the arguments of `design`.
 const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/data/emitted-digests.txt");
 
 /// FNV-1a of 64 bits.

@@ -1,4 +1,4 @@
-//! The verb `experiment`: its JSON has the names that others rely on, and its pictures can be drawn.
+//! The verb `experiment`: its JSON has the names that programs rely on, and its pictures can be drawn.
 
 use crate::common::{Scratch, eeruf, json};
 use serde_json::Value;

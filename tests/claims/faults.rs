@@ -1,4 +1,4 @@
-//! Faults in a scene show in what is read, for the time that they last; scene files name them.
+//! Faults in a scene show in readings for as long as they last; scene files name them.
 
 use std::path::Path;
 
@@ -50,7 +50,7 @@ fn is_apart(readings: &Readings, k: usize) -> bool {
     !(BEGINS - 0.2..ENDS + 0.2).contains(&readings.fired_s[k])
 }
 
-/// The share of a sensor's readings at these times for which something holds.
+/// Returns the share of a sensor's readings at these times for which a condition holds.
 fn share(readings: &Readings, sensor: u8, when: fn(&Readings, usize) -> bool, what: impl Fn(usize) -> bool) -> f64 {
     let all: Vec<_> = (0..readings.len()).filter(|&k| readings.sensor[k] == sensor && when(readings, k)).collect();
     assert!(all.len() > 30, "sensor {sensor}: {}", all.len());

@@ -1,4 +1,4 @@
-//! The tables of keys in the documents are what the program reads.
+//! The tables of keys in the documents match what the program reads.
 
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -26,7 +26,7 @@ fn rows(document: &str, heading: &str) -> Vec<Vec<String>> {
     cells.skip(1).collect()
 }
 
-/// The keys that a parser expects, from what it says to one that it does not know.
+/// Returns the keys that a parser expects, from its message on an unknown one.
 fn expected(message: &str) -> BTreeSet<String> {
     let (_, expected) = message.split_once("; expected").unwrap_or_else(|| panic!("{message}"));
     let keys = quoted(expected);

@@ -1,5 +1,5 @@
-//! Listings of README and the guides: each is compiled or run in the folder in which a reader would have it, or is a
-//! part of a file that is.
+//! Listings of README and the guides: each is compiled or run in the folder where a reader would have it, or is part of
+//! such a file.
 
 use std::fs;
 use std::os::unix::fs::{PermissionsExt as _, symlink};
@@ -51,7 +51,7 @@ fn listings(document: &str) -> Vec<Listing> {
     found
 }
 
-/// Commands of other tests, or of tools that are not here: how they begin, and the file that runs what they run.
+/// Commands of other tests, or of tools that are not here: their beginnings, and the file that runs the same.
 const ELSEWHERE: [(&str, &str); 12] = [
     ("cargo xtask test", "xtask/src/test.rs"),
     ("cargo install --path crates/eeruf-ros2", "xtask/src/ros2.rs"),
@@ -67,7 +67,7 @@ const ELSEWHERE: [(&str, &str); 12] = [
     ("eeruf-ros2 --p", "tests/ros2/test_node.py"),
 ];
 
-/// Parts of commands that take minutes, and what runs in their place.
+/// Parts of commands that take minutes, and shorter replacements.
 const SHORTER: [(&str, &str); 5] = [
     ("eeruf design ring.toml", "eeruf design ring.toml --places 1"),
     ("eeruf design robot.toml", "eeruf design robot.toml --places 1"),
@@ -108,7 +108,7 @@ fn folder_of_a_reader(document: &str) -> tempfile::TempDir {
     folder
 }
 
-/// Runs a command of a listing as a reader's shell does; says what went wrong.
+/// Runs a command of a listing like a reader's shell; returns the fault, if any.
 fn run(command: &str, folder: &Path) -> Option<String> {
     let mut words = command.replace("cargo run --release -- ", "eeruf ").replace("cargo run -- ", "eeruf ");
     for (part, shorter) in SHORTER {
@@ -152,7 +152,7 @@ fn run_crate(text: &str, folder: &Path) -> Option<String> {
     (!output.status.success()).then(|| format!("{text}{}", String::from_utf8_lossy(&output.stderr)))
 }
 
-/// Checks a listing by its language; returns what is wrong. Whatever is held nowhere is wrong.
+/// Checks a listing by its language; returns the fault, if any. A listing that no test covers is a fault.
 fn check(listing: &Listing, folder: &Path) -> Vec<String> {
     let Listing { document, language, source, text } = listing;
     let eeruf = |words: &str| run(&format!("eeruf {words}"), folder);

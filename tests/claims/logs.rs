@@ -1,4 +1,4 @@
-//! Logs in, logs out: what `eeruf replay` makes of files from robots.
+//! Logs in, logs out: the verdicts of `eeruf replay` on files from robots.
 
 use eeruf_logs::{Echo, Options, read_log};
 

@@ -1,4 +1,4 @@
-//! Claims of the paper and the documents, one module for each claim, in one binary: linking took longer than testing.
+//! Claims of the paper and the documents, one module for each, in one binary, since linking takes longer than testing.
 
 mod common;
 

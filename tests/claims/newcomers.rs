@@ -16,7 +16,7 @@ pub(crate) fn shell(line: &str, folder: &Path) -> Output {
     Output { stderr: stderr.into_bytes(), ..output }
 }
 
-/// The commands in a document's listings for a shell, but those that install or build.
+/// Returns the commands in a document's shell listings, without those that install or build.
 pub(crate) fn commands(document: &str) -> Vec<String> {
     let text = std::fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(document)).unwrap();
     let listings = text.split("```sh\n").skip(1).filter_map(|rest| rest.split("```").next());
@@ -78,7 +78,7 @@ fn strangers_find_their_ways_from_readme_and_type_what_works() {
     assert!(of("--program rust").contains("of a ring that fires by flow"), "{}", of("--program rust"));
 }
 
-/// The cell of a table's row under a heading.
+/// Returns the cell of a table's row under a heading.
 fn cell(out: &str, row: &str, heading: &str) -> String {
     let cells = |line: &str| line.split('|').map(|cell| cell.trim().to_owned()).collect::<Vec<_>>();
     let mut lines = out.lines().map(cells);

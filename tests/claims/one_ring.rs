@@ -1,4 +1,4 @@
-//! A ring file's word is the same everywhere: in a scene, in the tables that `design` emits, in the ring and the driver
+//! A ring file means the same everywhere: in a scene, in the tables that `design` emits, in the ring and the driver
 //! that fire by it. Here the file is read by TOML alone, and each of them is asked for what it ended with.
 
 use std::collections::BTreeMap;
@@ -12,7 +12,7 @@ use crate::common::{Scratch, eeruf};
 use crate::rings_in_scenes::scene;
 use crate::started::{FORMS, rings, run_c};
 
-/// A ring file with every key that has to reach the ring, of several makes.
+/// A ring file of several makes, with every key that has to reach the ring.
 const MIXED: &str = r#"
 sensors = 4
 layout = "ring"
@@ -61,7 +61,7 @@ impl Said {
         Self { file, sensors, modules }
     }
 
-    /// One number, or one for each sensor.
+    /// Returns one number, or one for each sensor.
     fn each(&self, key: &str) -> Option<Vec<f64>> {
         let number = |value: &toml::Value| value.as_float().unwrap_or_else(|| value.as_integer().unwrap() as f64);
         self.file.get(key).map(|value| match value {
@@ -74,7 +74,7 @@ impl Said {
         self.file.get(key).map(|value| u32::try_from(value.as_integer().unwrap()).unwrap())
     }
 
-    /// Lists of numbers; none without the key.
+    /// Returns lists of numbers; none without the key.
     fn lists(&self, key: &str) -> Vec<Vec<u32>> {
         self.file.get(key).map_or(vec![], |value| value.clone().try_into().unwrap())
     }
@@ -118,7 +118,7 @@ impl Said {
     }
 }
 
-/// A table as it was emitted, and what goes with it.
+/// An emitted table, and the settings that go with it.
 #[derive(Debug, PartialEq)]
 struct Table {
     period: u32,
@@ -135,7 +135,7 @@ struct Listening {
     stale_echo: bool,
 }
 
-/// The whole numbers in a text, as Rust writes them.
+/// Returns the whole numbers in Rust source text.
 fn numbers(text: &str) -> Vec<u32> {
     let words = text.split(|c: char| !c.is_alphanumeric() && c != '_').map(|word| word.replace('_', ""));
     let number = |word: String| match word.strip_prefix("0b") {
@@ -145,7 +145,7 @@ fn numbers(text: &str) -> Vec<u32> {
     words.filter_map(number).collect()
 }
 
-/// The numbers after this text, up to this end; none without it.
+/// Returns the numbers after this text, up to this end; none without it.
 fn after(text: &str, key: &str, end: char) -> Option<Vec<u32>> {
     let (_, rest) = text.split_once(key)?;
     Some(numbers(rest.split(end).next().unwrap()))
@@ -155,7 +155,7 @@ fn one(text: &str, key: &str) -> Option<u32> {
     after(text, key, ')').map(|found| found[0])
 }
 
-/// Firing times by lags and waits, or as they are.
+/// Returns firing times, given or from lags and waits.
 fn fire(list: impl Fn(&str) -> Option<Vec<u32>>) -> [Vec<u32>; 2] {
     ["a", "b"].map(|phase| {
         list(&format!("t_fire_{phase}_us")).unwrap_or_else(|| {
@@ -205,7 +205,7 @@ fn close(found: &[u32], said: &[f64]) -> bool {
     found.len() == said.len() && found.iter().zip(said).all(|(found, said)| (f64::from(*found) - said).abs() <= 2.0)
 }
 
-/// The firings of a table in three periods, in order: when, and which sensor.
+/// Returns the firings of a table in three periods, in order: time and sensor.
 fn firings(table: &Table) -> Vec<(u32, usize)> {
     let period = |k: u32| table.fire[k as usize % 2].iter().enumerate().map(move |(x, at)| (at + k * table.period, x));
     let mut all: Vec<_> = (0..3).flat_map(period).collect();
@@ -213,7 +213,7 @@ fn firings(table: &Table) -> Vec<(u32, usize)> {
     all
 }
 
-/// The table keeps what the file says of single sensors and pairs.
+/// Checks that the table keeps the file's values for single sensors and pairs.
 fn keeps(table: &Table, said: &Said) {
     let (windows, rests) = (said.windows_us(), said.rests_us());
     let in_one = |key: &str, x: usize, y: usize| {
@@ -244,7 +244,7 @@ fn keeps(table: &Table, said: &Said) {
     }
 }
 
-/// The robot of a scene with this ring and this table.
+/// Returns the robot of a scene with this ring and this table.
 fn scene_says(file: &str, text: &str, said: &Said, emitted: &str, table: &Table) {
     let mut more = String::new();
     if !["poses", "spacing_deg"].iter().any(|key| said.file.contains_key(*key)) {

@@ -1,4 +1,4 @@
-//! Standard output: a full disk, and a reader that goes away.
+//! Standard output: a full disk, and a reader that closes the pipe.
 
 use std::fs::OpenOptions;
 use std::process::{Command, Stdio};

@@ -1,4 +1,4 @@
-//! The program as its users call it: what it prints, and the exit code.
+//! The program from a user's view: its output and its exit code.
 
 use std::path::Path;
 use std::process::{Command, Stdio};

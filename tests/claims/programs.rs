@@ -1,4 +1,4 @@
-//! `eeruf design --program`: what it refuses, and what README shows. `cargo xtask programs` builds and runs programs.
+//! `eeruf design --program`: its refusals, and the listings of README. `cargo xtask programs` builds and runs programs.
 
 use std::collections::BTreeSet;
 use std::process::Command;

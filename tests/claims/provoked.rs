@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// A run that should have ended long ago hangs.
+/// A run that takes longer counts as hanging.
 const HANGS_AFTER: Duration = Duration::from_secs(120);
 
 struct Ended {
@@ -322,7 +322,7 @@ fn longest(text: &str) -> usize {
     text.lines().map(|line| line.chars().count()).max().unwrap_or(0)
 }
 
-/// One line of words, however it was wrapped.
+/// Returns one line of words, however it was wrapped.
 fn joined(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }

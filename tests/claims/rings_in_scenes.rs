@@ -1,5 +1,5 @@
-//! Rings of real machines, designed from their files, fire in scenes as they were designed: each sensor with the
-//! module, window and tolerance that it has there.
+//! Rings of real machines, designed from their files, fire in scenes as designed: each sensor has its module, window
+//! and tolerance.
 
 use std::path::Path;
 

@@ -14,7 +14,7 @@ fn way<'a>(answer: &'a Value, name: &str) -> &'a Value {
     ways.iter().find(|way| way["way"] == name).unwrap_or_else(|| panic!("no way {name}"))
 }
 
-/// The mean over rooms of a figure.
+/// Returns the mean of a figure over rooms.
 fn mean(way: &Value, figure: &str) -> f64 {
     ROOMS.iter().map(|room| number(&way["rooms"][room][figure])).sum::<f64>() / ROOMS.len() as f64
 }

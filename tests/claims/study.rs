@@ -1,9 +1,9 @@
-//! The verbs `study` and `paths` as their users call them: what they print, draw and refuse.
+//! The verbs `study` and `paths` from a user's view: output, pictures and refusals.
 
 use crate::common::{Scratch, eeruf, json};
 use serde_json::Value;
 
-/// The names of the methods that a study compares.
+/// Returns the names of the methods that a study compares.
 fn methods() -> Vec<&'static str> {
     eeruf_sim::Method::usual().map(eeruf_sim::Method::as_str).collect()
 }

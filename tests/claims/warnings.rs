@@ -1,5 +1,5 @@
-//! Harm that files and pages of ours could do to whoever copies them: settings that are known to hurt stay out, and
-//! what is known to be unsafe is said where one reads first.
+//! Harm to users who copy our files and pages: settings known to hurt are absent, and dangers are stated where users
+//! read first.
 
 use std::path::Path;
 

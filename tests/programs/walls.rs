@@ -1,5 +1,5 @@
-//! The crate of `eeruf design --program rust` on modules that are each before a wall of their own: how many readings
-//! after the first of each, how many accepted, how many of them wrong.
+//! Runs the crate of `eeruf design --program rust` with each module before a wall of its own: number of readings after
+//! the first of each, of accepted ones, and of wrong ones.
 
 use std::{array, convert::Infallible};
 

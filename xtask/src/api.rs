@@ -84,13 +84,13 @@ fn names_at_root(api: &str) -> BTreeSet<String> {
     names.filter(|rest| !rest.contains("::")).collect()
 }
 
-/// Paths of structures, enumerations and traits.
+/// Returns the paths of structures, enumerations and traits.
 fn types(api: &str) -> impl Iterator<Item = String> {
     let is_type = |line: &&str| ["struct", "enum", "trait"].iter().any(|kind| line.contains(&format!("pub {kind} ")));
     api.lines().filter(is_type).filter_map(declared)
 }
 
-/// Types with the same name and members in two modules.
+/// Returns types with the same name and members in two modules.
 fn types_at_two_places(api: &str) -> Vec<String> {
     let lines: Vec<_> = api.lines().filter_map(|line| Some((line, declared(line)?))).collect();
     let mut seen = Vec::new();
@@ -109,7 +109,7 @@ fn types_at_two_places(api: &str) -> Vec<String> {
     twice
 }
 
-/// All public items of a crate, one a line; not what every type has by itself.
+/// Returns all public items of a crate, one a line, without those that every type has.
 fn interface(name: &str) -> Result<String> {
     let mut cargo = cargo_of_version(RUST)?;
     // JSON is not stable. In a folder of its own, since build scripts run again where this variable comes and goes.

@@ -21,7 +21,7 @@ pub(crate) fn blocks<'a>(text: &'a str, begin: &str) -> Result<Vec<Block<'a>>> {
     text.split(begin).skip(1).map(|rest| Ok(split(rest)?.0)).collect()
 }
 
-/// The text with the body of each part replaced by what `fresh` gives for it.
+/// Returns the text with the body of each part replaced by the result of `fresh`.
 pub(crate) fn replaced(text: &str, begin: &str, mut fresh: impl FnMut(&Block<'_>) -> Result<String>) -> Result<String> {
     let mut pieces = text.split(begin);
     let mut out = pieces.next().unwrap_or_default().to_owned();

@@ -1,4 +1,4 @@
-//! Files and packages that changed since the branch left the main one, as git knows it.
+//! Files and packages that changed since the branch left the main one, from git.
 
 use std::process::Command;
 

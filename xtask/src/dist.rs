@@ -1,4 +1,4 @@
-//! `cargo xtask dist`: wheels for Linux and static programs, as a release has them.
+//! `cargo xtask dist`: wheels for Linux and static programs for a release.
 
 use std::env;
 use std::path::{Path, PathBuf};
@@ -18,7 +18,7 @@ const TARGETS: [(&str, &str); 4] = [
     ("aarch64-unknown-linux-gnu", "manylinux2014"),
     ("aarch64-unknown-linux-musl", "musllinux_1_2"),
 ];
-/// Commands that the programs for all targets must answer alike.
+/// Commands that the programs for all targets must answer in the same way.
 const SAY_ALIKE: [&[&str]; 3] = [
     &["--version"],
     &["design", "rings/hc-sr04-8.toml", "--no-atlas", "--period-only", "--emit", "c"],
@@ -80,9 +80,9 @@ fn tool(name: &str) -> PathBuf {
     interpreter(&env::current_dir().unwrap_or_default().join(TOOLS)).with_file_name(name)
 }
 
-/// A compiler that has the libraries of a target, or makes them.
+/// A compiler that has the libraries of a target, or builds them.
 struct Compiler {
-    /// Environment of a build that makes it be taken.
+    /// Environment of a build that uses it.
     environment: Vec<(&'static str, &'static str)>,
     /// Compilers that come from different places must not share a folder.
     target_folder: &'static str,
@@ -171,7 +171,7 @@ fn stands_alone(program: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Output of a program, here or in an emulator; nothing where neither can run it.
+/// Returns the output of a program, here or in an emulator; `None` if neither can run it.
 fn says(program: &Path, target: &str) -> Result<Option<Vec<String>>> {
     let (architecture, _) = target.split_once('-').unwrap_or((target, ""));
     let emulator = format!("qemu-{architecture}");

@@ -51,13 +51,13 @@ fn table(board: &str) -> Result<()> {
     Ok(())
 }
 
-/// The program for the Uno, built.
+/// Builds the program for the Uno.
 pub(crate) fn uno() -> Result<PathBuf> {
     let (board, target) = UNO;
     build(board, target).map(|folder| folder.join("eeruf-example-uno.elf"))
 }
 
-/// Builds an example; the folder that the program is in.
+/// Builds an example; returns the folder with the program.
 fn build(board: &str, target: &str) -> Result<PathBuf> {
     let folder = Path::new("examples").join(board);
     run(Command::new("cargo").current_dir(&folder).args(["fmt", "--check"]))?;

@@ -63,7 +63,7 @@ pub(crate) fn run_all(plan: &Plan, steps: &mut Steps) {
     });
 }
 
-/// Formatting, and Clippy for all but RTIC's program, which is of another target.
+/// Checks formatting, and runs Clippy for all but RTIC's program, which has another target.
 fn lint() -> Result<()> {
     run_component("rustfmt", "fmt --all --check --manifest-path firmware/Cargo.toml")?;
     let [microbit, ..] = &BOARDS;
@@ -102,12 +102,12 @@ fn image(board: &Board, name: &str) -> Result<PathBuf> {
     Ok(Path::new("firmware").join(target_folder(&cargo)).join(board.target).join("release").join(name))
 }
 
-/// Runs an image, with `2^shift` ns an instruction; what it says, if it leaves with 0 within five minutes.
+/// Runs an image, with `2^shift` ns an instruction. Returns its output if it leaves with 0 within five minutes.
 fn run_image(board: &Board, name: &str, shift: u32) -> Result<String> {
     qemu(board, &image(board, name)?, shift)
 }
 
-/// The command that runs an image on a board, with `2^shift` ns an instruction.
+/// Returns the command that runs an image on a board, with `2^shift` ns an instruction.
 fn emulator(board: &Board, image: &Path, shift: u32) -> Command {
     let mut qemu = Command::new(board.qemu);
     qemu.args(board.machine)
@@ -152,7 +152,7 @@ fn expect(board: &Board, name: &str, shift: u32, what: &str) -> Result<()> {
     Ok(())
 }
 
-/// The example of the C library, on the host and on a Cortex-M3.
+/// Builds the example of the C library, on the host and on a Cortex-M3.
 fn c_example(board: &Board) -> Result<()> {
     let folder = Path::new("firmware/target/c");
     fs::create_dir_all(folder)?;
@@ -208,7 +208,7 @@ fn llvm(tool: &str, args: &[&str], image: &Path) -> Result<String> {
     }
 }
 
-/// The tables of the boards' rings in the simulated world, in lock step with the host's.
+/// Runs the boards' rings in the simulated world, in lock step with the host's, and returns the tables.
 fn in_the_loop(program: &str, arguments: &[&str]) -> Result<String> {
     let mut harness = Command::new(built("eeruf-hil")?);
     harness.arg("scenes/alcove-hc-sr04.toml").args(arguments);

@@ -1,5 +1,5 @@
-//! Rules for sources that no linter has: in Rust lengths of lines and files and words that say too little, everywhere
-//! openings of doc comments. CONTRIBUTING.md has the reasons.
+//! Rules for sources that no linter has: in Rust lengths of lines and files and vague phrases, everywhere openings of
+//! doc comments. CONTRIBUTING.md has the reasons.
 
 use std::fmt::Write as _;
 use std::process::Command;
@@ -8,13 +8,13 @@ use anyhow::{Context as _, Result, ensure};
 
 use crate::steps::output;
 
-/// As long as a line may be, in characters; the formatter leaves comments and texts as they are.
+/// Largest number of characters in a line; the formatter does not wrap comments and texts.
 const LINE: usize = 120;
-/// As many lines as a file may have, tests included.
+/// Largest number of lines in a file, tests included.
 const FILE: usize = 700;
 
-/// Openings that name no thing, or one of the line above: a doc comment begins with a noun, or with what the function
-/// does.
+/// Openings that name nothing, or something on the line above: a doc comment begins with a noun, or with what the
+/// function does.
 const OPENINGS: [&str; 21] = [
     "What ",
     "Whether ",
@@ -38,14 +38,14 @@ const OPENINGS: [&str; 21] = [
     "Where it ",
     "To be ",
 ];
-/// Phrases with a plainer word, which stands behind; each in two parts, so that this file has none of them.
+/// Vague phrases and their plainer words; each phrase is in two parts, so that this file does not contain it.
 const PHRASES: [(&str, &str, &str); 2] =
     [("so ma", "ny", "the number, or `this many`"), ("is not the", "re", "`out of range`, or `missing`")];
 
 /// Sources that the program writes, in lines as long as their numbers.
 const EMITTED: &str = "tests/claims/emitted/";
 
-/// Looks through every source in Rust, Python and C of the repository.
+/// Checks every source in Rust, Python and C of the repository.
 pub(crate) fn check() -> Result<()> {
     // Files that are about to be added, too.
     let listing = ["ls-files", "--cached", "--others", "--exclude-standard"];
@@ -65,7 +65,7 @@ pub(crate) fn check() -> Result<()> {
     Ok(())
 }
 
-/// The lines at which a doc comment begins otherwise than it should, counted from 1.
+/// Returns the lines at which a doc comment begins with one of [`OPENINGS`], counted from 1.
 fn wrong_openings(text: &str) -> Vec<(usize, String)> {
     let mut was_doc = false;
     let wrong = |(line, words): (usize, &str)| {
@@ -81,7 +81,7 @@ fn wrong_openings(text: &str) -> Vec<(usize, String)> {
     (1..).zip(text.lines()).filter_map(wrong).collect()
 }
 
-/// The lines of a file in Rust that break a rule, counted from 1, and which.
+/// Returns the lines of a Rust file that break a rule, counted from 1, and the rule.
 fn broken_rules(text: &str) -> Vec<(usize, String)> {
     let mut broken = wrong_openings(text);
     for (line, words) in (1..).zip(text.lines()) {

@@ -1,4 +1,4 @@
-//! Links in the documents: each leads to a file of the repository, and to a heading that is there.
+//! Links in the documents: each leads to an existing file of the repository, and to an existing heading.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -11,7 +11,7 @@ use pulldown_cmark::{Event, Parser, Tag, TagEnd};
 
 use crate::steps::output;
 
-/// A link or picture: where it stands in the text, brackets included, and where it leads.
+/// A link or picture: its position in the text, brackets included, and its target.
 pub(crate) struct Link {
     pub(crate) range: Range<usize>,
     pub(crate) target: String,
@@ -41,12 +41,12 @@ pub(crate) fn check_documents() -> Result<()> {
     Ok(())
 }
 
-/// Returns true if a link leads into the repository, not to the world.
+/// Returns true if a link leads into the repository, not to the web.
 pub(crate) fn within_reach(target: &str) -> bool {
     !target.contains("://") && !target.starts_with("mailto:")
 }
 
-/// The file from the repository's root that a link of a document leads to, and the heading in it.
+/// Returns the target file of a document's link, from the repository's root, and the heading in it.
 pub(crate) fn parts<'a>(document: &Path, target: &'a str) -> (PathBuf, Option<&'a str>) {
     let (file, heading) = target.split_once('#').map_or((target, None), |(file, heading)| (file, Some(heading)));
     if file.is_empty() {

@@ -1,5 +1,5 @@
-//! `cargo xtask logs`: what is measured of logs and takes minutes: bags of a million messages, as `rosbags` writes
-//! them, who fools whom in alcoves and while driving, and the data set. The tests of it are in `cargo xtask test`.
+//! `cargo xtask logs`: measurements of logs that take minutes: bags of a million messages, as `rosbags` writes them,
+//! who fools whom in alcoves and while driving, and the data set. The tests of it are in `cargo xtask test`.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;

@@ -13,7 +13,7 @@ use crate::blocks::{blocks, replaced};
 
 pub(crate) const DOCUMENT: &str = "tests/data/boards.txt";
 const MEASURED: &str = "<!-- measured: ";
-/// The table that says which compiler each board's figures are of.
+/// The table that names the compiler of each board's figures.
 pub(crate) const COMPILERS: &str = "compilers";
 
 /// Part of the names of the tables whose figures do not depend on the compiler.
@@ -58,7 +58,7 @@ pub(crate) fn check(tables: &Tables, only: Option<&str>) -> Result<()> {
     Ok(())
 }
 
-/// A table without the rows of other boards.
+/// Returns a table without the rows of other boards.
 fn rows_of(table: &str, board: &str) -> String {
     let kept = ["board", "---", board];
     let is_kept = |line: &&str| rows(line).iter().flatten().next().is_some_and(|first| kept.contains(first));
@@ -98,8 +98,8 @@ fn differences(
     differ
 }
 
-/// Returns true if a cell is as measured. A number is a timing if it stands before `us` or `ms`, or after a word in
-/// `_us`.
+/// Returns true if a cell matches the measured one. A number is a timing if it stands before `us` or `ms`, or after a
+/// word in `_us`.
 fn is_same(expected: &str, measured: &str) -> bool {
     let words = |cell: &str| cell.split_whitespace().map(|word| word.trim_end_matches(',').to_owned()).collect();
     let (expected, measured): (Vec<String>, Vec<String>) = (words(expected), words(measured));

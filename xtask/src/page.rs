@@ -30,7 +30,7 @@ const SHRINK: &str = "wasm-opt -Os --enable-bulk-memory --enable-mutable-globals
                       --enable-sign-ext --enable-reference-types --enable-multivalue";
 /// Packages that npm last installed for the tests.
 const INSTALLED: &str = "node_modules/.installed.json";
-/// The module that differs between the folder and the one file, and what stands for it there.
+/// The module that differs between the folder and the one file, and its replacement there.
 const PLATFORM: [&str; 2] = ["platform.js", "platform-single.js"];
 
 /// Tests of the page to run.
@@ -91,7 +91,7 @@ fn shrink(from: &Path, to: &Path) -> Result<()> {
     Ok(())
 }
 
-/// The page's files by name.
+/// Returns the page's files by name.
 fn sources() -> Result<BTreeMap<String, String>> {
     let mut sources = BTreeMap::new();
     for entry in fs::read_dir(SOURCES)? {
@@ -103,7 +103,7 @@ fn sources() -> Result<BTreeMap<String, String>> {
     Ok(sources)
 }
 
-/// The page as one file: style, scripts and engine within it.
+/// Makes the page as one file: style, scripts and engine within it.
 fn single(sources: &BTreeMap<String, String>, engine: &[u8]) -> Result<String> {
     let html = sources.get("index.html").with_context(|| format!("{SOURCES}: no index.html"))?;
     let style = sources.get("style.css").map(String::as_str).unwrap_or_default();
@@ -136,21 +136,21 @@ fn single(sources: &BTreeMap<String, String>, engine: &[u8]) -> Result<String> {
     )
 }
 
-/// A module and all that it imports as one classic script.
+/// Bundles a module and all its imports as one classic script.
 fn bundle(entry: &str) -> Result<String> {
     let mut esbuild = Command::new(Path::new(TESTS).join("node_modules/.bin/esbuild"));
     esbuild.args(["--bundle", "--format=iife", "--charset=utf8", "--log-level=warning"]);
     output(esbuild.arg(format!("{BUNDLED}/{entry}")))
 }
 
-/// The engine as letters: packed first, since letters pack badly.
+/// Encodes the engine as letters: packed first, since letters pack badly.
 fn packed(engine: &[u8]) -> Result<String> {
     let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
     let packed = encoder.write_all(engine).and_then(|()| encoder.finish());
     Ok(BASE64_STANDARD.encode(packed?))
 }
 
-/// Installs what bundles and tests the page, if that is not done.
+/// Installs the packages that bundle and test the page, unless they are installed.
 fn install() -> Result<()> {
     need("node --version", "apt install nodejs npm")?;
     let tests = Path::new(TESTS);

@@ -54,7 +54,7 @@ pub(crate) fn documents() -> Result<Vec<String>> {
     Ok(listed.lines().map(str::to_owned).collect())
 }
 
-/// Compares what stands in documents with what their commands print now.
+/// Compares documents with the current output of their commands.
 pub(crate) fn check(documents: &[String], which: Which) -> Result<()> {
     let mut differ = Vec::new();
     let mut same = 0;
@@ -80,7 +80,7 @@ pub(crate) fn check(documents: &[String], which: Which) -> Result<()> {
     Ok(())
 }
 
-/// Puts what the commands of a document print now in place of what stands there.
+/// Replaces quoted output in a document by the current output.
 pub(crate) fn reprint(document: &str) -> Result<()> {
     let fresh = replaced(&fs::read_to_string(document)?, PRINTED_BY, |block| {
         let printed = output_of(&mark(block)?)?;
@@ -90,7 +90,7 @@ pub(crate) fn reprint(document: &str) -> Result<()> {
     Ok(fs::write(document, fresh)?)
 }
 
-/// The body of a part without the fence around what is no Markdown.
+/// Returns the body of a part, without the fence around text that is no Markdown.
 fn unfenced(body: &str) -> &str {
     let body = body.trim();
     body.strip_prefix(FENCE).map_or(body, |inner| inner.trim_end_matches("```").trim())

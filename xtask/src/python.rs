@@ -13,7 +13,7 @@ use crate::steps::{empty, need, run};
 /// The environment of the tests.
 const HOME: &str = "target/python";
 
-/// Everything about the Python package.
+/// Runs everything about the Python package.
 pub(crate) fn python() -> Result<()> {
     let home = Path::new(HOME);
     let python = tested()?;
@@ -92,7 +92,7 @@ pub(crate) fn distributions(folder: &Path) -> Result<()> {
     run(Command::new(&python).args(["-m", "abi3audit", "--strict"]).arg(built))
 }
 
-/// A virtual environment with these packages of `PyPI`; its Python.
+/// Makes a virtual environment with these packages of `PyPI`; returns its Python.
 pub(crate) fn environment(home: &Path, packages: &[&str]) -> Result<PathBuf> {
     need("python3 -c __import__('ensurepip')", "apt install python3-venv")?;
     let python = interpreter(home);
@@ -103,7 +103,7 @@ pub(crate) fn environment(home: &Path, packages: &[&str]) -> Result<PathBuf> {
     Ok(python)
 }
 
-/// The environment with what the tests need; its Python.
+/// Makes the environment with the tests' packages; returns its Python.
 fn tested() -> Result<PathBuf> {
     let home = Path::new(HOME);
     // pip reads dependency groups since 25.1.
@@ -111,8 +111,8 @@ fn tested() -> Result<PathBuf> {
     environment(home, &["--group", "test", "numpy"])
 }
 
-/// A user's first steps: the wheel, or the source distribution, in an empty environment, the README's lines, and the
-/// program that came along.
+/// Tries a user's first steps: the wheel, or the source distribution, in an empty environment, the README's lines, and
+/// the program that comes along.
 pub(crate) fn fresh(distribution: &Path) -> Result<()> {
     let home = Path::new("target/python-fresh");
     empty(home)?;
@@ -127,7 +127,7 @@ pub(crate) fn fresh(distribution: &Path) -> Result<()> {
     tutorial(home, &program)
 }
 
-/// Runs what the tutorial says to type, but for how to install, in a folder where a user has the program and no clone.
+/// Runs the tutorial's commands, without those that install, in a folder where a user has the program and no clone.
 fn tutorial(home: &Path, program: &Path) -> Result<()> {
     let text = fs::read_to_string("docs/tutorial/ring.md")?;
     let blocks = text.split("```sh\n").skip(1).filter_map(|rest| rest.split("```").next());

@@ -84,7 +84,7 @@ pub(crate) fn materials() -> Result<()> {
     Ok(())
 }
 
-/// The version, where all files that state it agree.
+/// Returns the version, if all files that state it agree.
 fn one_version() -> Result<String> {
     let metadata = MetadataCommand::new().no_deps().exec()?;
     let mut wrong = Vec::new();

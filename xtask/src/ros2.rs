@@ -9,7 +9,7 @@ use anyhow::{Result, ensure};
 use crate::steps::{empty, need, output, run, skip};
 use crate::toolchain::built;
 
-/// Clients that listen; the newest versions.
+/// Clients that listen, in their newest versions.
 const LISTENERS: [&str; 3] = ["cyclonedds", "pymavlink", "pytest"];
 
 pub(crate) fn ros2() -> Result<()> {
@@ -76,7 +76,7 @@ pub(crate) fn package() -> Result<()> {
     Ok(())
 }
 
-/// A virtual environment with those who listen; its Python.
+/// Makes a virtual environment with the listeners; returns its Python.
 pub(crate) fn environment() -> Result<PathBuf> {
     let packages = [&["--only-binary", "cyclonedds"][..], &LISTENERS].concat();
     crate::python::environment(Path::new("target/ros2"), &packages)

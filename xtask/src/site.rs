@@ -43,7 +43,7 @@ pub(crate) fn site(steps: &mut Steps) {
     println!("{SITE}/index.html");
 }
 
-/// Copies the documents, with links as the book has them, prints all verbs and options, and builds it.
+/// Copies the documents, with links adapted to the book, prints all verbs and options, and builds it.
 fn book() -> Result<()> {
     let sources = Path::new(SOURCES);
     empty(sources)?;
@@ -72,7 +72,7 @@ fn mdbook() -> Result<PathBuf> {
     Ok(Path::new(root).join("bin/mdbook"))
 }
 
-/// A document with links as they are in the book: to chapters and pictures there, to anything else in the repository.
+/// Adapts a document's links to the book: to chapters and pictures there, to anything else in the repository.
 fn rewritten(document: &Path, text: &str) -> String {
     let (mut rewritten, mut end) = (String::new(), 0);
     for link in links(text) {
@@ -119,7 +119,7 @@ fn links_lead_somewhere() -> Result<()> {
     Ok(())
 }
 
-/// The files below a folder that have this ending.
+/// Returns the files below a folder that have this ending.
 fn files(folder: &str, ending: &str) -> Result<Vec<PathBuf>> {
     let found = output(Command::new("find").args([folder, "-name", &format!("*.{ending}")]))?;
     Ok(found.lines().map(PathBuf::from).collect())

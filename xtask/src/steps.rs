@@ -10,7 +10,7 @@ use std::time::Instant;
 
 use fs_err::{self as fs, File};
 
-/// The error of a step that did not run: something it needs is not installed.
+/// The error of a step that did not run because something it needs is not installed.
 #[derive(Debug)]
 pub(crate) struct Skipped(String);
 
@@ -36,8 +36,7 @@ pub(crate) struct Steps {
 }
 
 impl Steps {
-    /// Runs one step and says how it went. A failure does not keep the others from running. What the step gives, if it
-    /// passed.
+    /// Runs one step and prints the result. A failure does not stop the others. Returns the step's value if it passed.
     pub(crate) fn step<T>(&mut self, name: &str, run: impl FnOnce() -> Result<T>) -> Option<T> {
         println!("\n=== {name}");
         let began = Instant::now();

@@ -13,7 +13,7 @@ use crate::steps::{command, output, run, skip};
 const CORE: &str = "/usr/share/arduino/hardware/arduino/avr/cores/arduino";
 const VARIANTS: &str = "/usr/share/arduino/hardware/arduino/avr/variants";
 
-/// The options of the core's platform.txt, and what its sources want of this compiler.
+/// The options of the core's platform.txt, and those that its sources need with this compiler.
 const COMMON: &str = "-c -g -Os -ffunction-sections -fdata-sections -flto -DF_CPU=16000000L -DARDUINO=10819 \
                       -DARDUINO_ARCH_AVR -DDECIMAL_DIG=10";
 const C: &str = "avr-gcc -std=gnu11 -fno-fat-lto-objects";
@@ -72,7 +72,7 @@ fn object(folder: &Path, source: &Path) -> PathBuf {
     folder.join(source.file_name().unwrap_or_default()).with_added_extension("o")
 }
 
-/// The core as an archive, built once.
+/// Builds the core as an archive, once.
 fn core(board: Board) -> Result<PathBuf> {
     if !Path::new(CORE).exists() {
         return skip(format!("no {CORE}; install arduino-core-avr"));
@@ -93,18 +93,18 @@ fn core(board: Board) -> Result<PathBuf> {
     Ok(archive)
 }
 
-/// An example of the packed library.
+/// Builds an example of the packed library.
 pub(super) fn example(library: &Path, name: &str) -> Result<Sketch> {
     let text = fs::read_to_string(library.join(format!("examples/{name}/{name}.ino")))?;
     ours(library, Board::Uno, name, &text, &[])
 }
 
-/// A sketch of our own, with the packed library and all warnings.
+/// Builds a sketch of our own, with the packed library and all warnings.
 pub(super) fn ours(library: &Path, board: Board, name: &str, text: &str, defines: &[&str]) -> Result<Sketch> {
     sketch(&library.join("src"), board, name, text, &[&["-Wall", "-Wextra", "-Werror"], defines].concat())
 }
 
-/// A sketch with the sources of a library.
+/// Builds a sketch with the sources of a library.
 pub(super) fn sketch(library: &Path, board: Board, name: &str, text: &str, options: &[&str]) -> Result<Sketch> {
     let core = core(board)?;
     let folder = Path::new(TARGET).join(name);
@@ -130,7 +130,7 @@ pub(super) fn sketch(library: &Path, board: Board, name: &str, text: &str, optio
     Ok(Sketch { elf, flash, ram })
 }
 
-/// Bytes of flash, and of data and bss.
+/// Returns the bytes of flash, and of data and bss.
 pub(super) fn size(elf: &Path) -> Result<(u64, u64)> {
     let size = output(Command::new("avr-size").arg(elf))?;
     let numbers: Vec<u64> =

@@ -1,5 +1,5 @@
-//! Sketches on a simulated Uno with a faulty module: its line is never said to be free space, and the others keep
-//! measuring their walls.
+//! Sketches on a simulated Uno with a faulty module: its line never counts as free space, and the others keep measuring
+//! their walls.
 
 use std::env;
 use std::fmt::Write as _;
@@ -41,7 +41,7 @@ const FORGOTTEN: &str = "forgotten call";
 const EDGE_SKETCH: &str = "c/arduino/world/edges.ino";
 /// Pins of its triggers, then of its echoes.
 const EDGE_PINS: [u8; 8] = [4, 5, 6, 7, 8, 2, 14, 3];
-/// Echo times of the file's walls, in microseconds: those of the sensors that are well, and the near one.
+/// Echo times of the file's walls, in microseconds: those of the healthy sensors, and the near one.
 const WALL_US: u32 = 5_830;
 const NEAR_US: u32 = 500;
 /// Distance of the walls, and how far a sketch may be off it.
@@ -69,7 +69,7 @@ fn rows(file: &str) -> impl Iterator<Item = Vec<&str>> {
 }
 
 impl Says {
-    /// The state that the file has for a fault in this place. A clone before a wall is as one that is healthy.
+    /// Returns the file's state for a fault in this place. A clone before a wall counts as healthy.
     fn of(file: &str, fault: &str, place: &str) -> Result<Self> {
         let names = if place == "wall" && fault.starts_with("hold of") { "healthy" } else { fault };
         let mut rows = rows(file).filter(|row| row.first() == Some(&names) && row.len() == 6);
@@ -84,7 +84,7 @@ impl Says {
     }
 }
 
-/// The words of a sketch about one module, reading by reading.
+/// Returns a sketch's words about one module, reading by reading.
 fn words_of(said: &str, module: usize) -> Vec<&str> {
     let prefix = format!("{module} ");
     said.lines().filter_map(|line| line.trim().strip_prefix(&prefix)).collect()
@@ -105,13 +105,13 @@ fn counts(words: &[&str]) -> [usize; 4] {
     counts
 }
 
-/// The fewest distances that a sketch says of one of these modules.
+/// Returns the smallest number of distances that a sketch prints of one of these modules.
 fn least_distances(said: &str, modules: impl IntoIterator<Item = usize>) -> usize {
     let distances = |module| counts(&words_of(said, module))[Says::Wall as usize];
     modules.into_iter().map(distances).min().unwrap_or(0)
 }
 
-/// The words of a sketch about modules, one of which has a fault, each before a wall of its own at this echo time.
+/// Returns a sketch's words about modules, one of which has a fault, each before a wall of its own at this echo time.
 fn with_fault(
     world: &Path,
     elf: &Path,

@@ -22,7 +22,7 @@ const RING: &str = "rings/hc-sr04-8.toml";
 const RINGS: [usize; 2] = [6, 8];
 const SEED: u64 = 20_000;
 const DRAWN: usize = 20;
-/// The figures of all.
+/// The file with all figures.
 const FILE: &str = "tests/data/arduino-loads.csv";
 const POLLED: &str = "polled";
 const OWN_WALLS: &str = "own walls";
@@ -34,7 +34,7 @@ const CORNER: [usize; 3] = [1, 11, 18];
 /// A sketch that starves says so within as many milliseconds.
 const SAYS_SO_MS: u32 = 2_000;
 
-/// Work of this many microseconds, begun so long after the one before began; every turn of `loop()` if that is 0.
+/// Work of this many microseconds, begun this long after the previous start; in every turn of `loop()` if that is 0.
 #[derive(Clone, Copy)]
 struct Load {
     work_us: u32,
@@ -102,7 +102,7 @@ impl Load {
         }
     }
 
-    /// One that is drawn: 0.2 to 8 ms, with up to half of the time; one in five in every turn.
+    /// Draws a load: 0.2 to 8 ms, for up to half of the time; one in five in every turn.
     fn drawn(state: &mut u64) -> Self {
         let mut up_to = |most: u32| {
             *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -113,7 +113,7 @@ impl Load {
         if up_to(5) == 0 { load(1_000 * work_us.div_ceil(1_000), 0, 0.0) } else { load(work_us, every_us, 0.0) }
     }
 
-    /// Figures of a ring that are not as promised.
+    /// Returns the figures of a ring that break a promise.
     fn broken(&self, heard: &UnderLoad, polled: bool, compared: bool, own_walls: bool) -> Vec<String> {
         let UnderLoad { right, wrong, accepted_percent, starved, slow_ms, .. } = *heard;
         let most = self.most[usize::from(!polled)];
@@ -135,7 +135,7 @@ impl Load {
         .collect()
     }
 
-    /// The bytes that the sketch reads.
+    /// Returns the bytes that the sketch reads.
     fn eeprom(&self) -> String {
         let numbers = [self.work_us, self.every_us, self.baud].map(u32::to_le_bytes).concat();
         let bytes = numbers.into_iter().chain([self.masks.into(), self.waits.into()]);
@@ -171,7 +171,7 @@ fn places() -> Result<[Place; 3]> {
     Ok([place("alcove", alcove)?, place(OWN_WALLS, own)?, place("large alcove", large)?])
 }
 
-/// The sketch for this many modules, by what `design` emits.
+/// Makes the sketch for this many modules from the output of `design`.
 fn sketch(library: &Path, modules: usize, polled: bool) -> Result<build::Sketch> {
     let name = format!("Loads{modules}{}", if polled { "Polled" } else { "" });
     let folder = Path::new(TARGET).join(&name);
@@ -191,7 +191,7 @@ fn sketch(library: &Path, modules: usize, polled: bool) -> Result<build::Sketch>
     )
 }
 
-/// A sketch that is run, how it has its edges, and what else it does.
+/// A run of a sketch, with the way it gets its edges and its other work.
 struct Run<'a> {
     elf: &'a Path,
     edges: &'static str,
@@ -208,7 +208,7 @@ struct Ring<'a> {
 }
 
 impl Ring<'_> {
-    /// The rows of all its runs, and what is not as promised.
+    /// Returns the rows of all its runs, and the broken promises.
     fn rows(&self, world: &Path, seconds: u32) -> Result<(String, Vec<String>)> {
         let (mut rows, mut broken) = (String::new(), vec![]);
         let (modules, place) = (self.modules, self.place.name);
@@ -235,7 +235,7 @@ impl Ring<'_> {
     }
 }
 
-/// Runs all loads, and writes their figures; or a corner of them for CI.
+/// Runs all loads and writes their figures, or runs a few of them for CI.
 pub(super) fn run(library: &Path, newping: Option<&Path>, all: bool) -> Result<()> {
     let world = world::build()?;
     let mut state = SEED;

@@ -1,6 +1,6 @@
 //! NewPing beside eeruf: the same rings on a simulated Uno, among the same simulated modules, in the same room.
 //!
-//! By hand: NewPing is not free to be kept here, so that a folder with its sources is asked for.
+//! This is run by hand: the licence of NewPing does not allow it here, so the user names a folder with its sources.
 
 use std::path::{Path, PathBuf};
 

@@ -1,5 +1,5 @@
-//! Every ready table on a simulated Uno, each module before a wall of its own and nothing else to hear: what is not
-//! accepted there is lost to lateness of the sketch, not to sound.
+//! Every ready table on a simulated Uno, each module before a wall of its own and nothing else to hear: readings not
+//! accepted there are lost to the sketch's lateness, not to sound.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -49,7 +49,7 @@ pub(super) fn run(library: &Path, short: bool) -> Result<()> {
     Ok(())
 }
 
-/// The shares of all firings and of the worst module's, if they are enough.
+/// Returns the shares of all firings and of the worst module's, if they are large enough.
 pub(super) fn enough(name: &str, (all, (worst, module)): (f64, (f64, usize)), least: (f64, f64)) -> Result<(f64, f64)> {
     ensure!(
         worst >= least.0 && all >= least.1,
@@ -61,7 +61,7 @@ pub(super) fn enough(name: &str, (all, (worst, module)): (f64, (f64, usize)), le
     Ok((all, worst))
 }
 
-/// The sketch for as many modules as there are pins.
+/// Returns the sketch for as many modules as there are pins.
 fn exchanged(text: &str, pins: &[u8]) -> Result<String> {
     let list =
         |pins: &[u8]| format!("PINS[] = {{{}}}", pins.iter().map(ToString::to_string).collect::<Vec<_>>().join(", "));

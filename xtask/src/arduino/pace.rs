@@ -13,10 +13,10 @@ use crate::steps::edited;
 const SKETCHES: [&str; 6] = ["Ring8", "States4", "FromNewPing", "SerialRing8", "Flow12", "Strip"];
 const SAY_SO: usize = 2;
 const SECONDS: u32 = 3;
-/// Stands in each before `X ms`.
+/// Words in each sketch before `X ms`.
 const STATED: &str = "One read() takes up to ";
 const TOO_SLOW: &str = "too slow";
-/// Times each call, and says a time that is longer than all before.
+/// Times each call, and prints a time longer than all before.
 const TIMED: &str = "bool timed() {
   const uint32_t began = micros();
   const bool is_reading = sonar.read();
@@ -70,7 +70,7 @@ pub(super) fn run(library: &Path) -> Result<()> {
     Ok(())
 }
 
-/// The output of a sketch among modules that are each before a wall of their own.
+/// Returns the output of a sketch among modules that are each before a wall of their own.
 fn heard(library: &Path, world: &Path, example: &Example, name: &str, text: &str) -> Result<String> {
     let sketch = build::ours(library, Board::Uno, name, text, &[])?;
     let walls: Vec<_> = (0..example.modules() as u32).map(|module| Some(6_000 + 1_300 * module)).collect();

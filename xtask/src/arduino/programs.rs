@@ -42,7 +42,7 @@ const ASKED: [Asked; 17] = [
 /// Folder of the harnesses.
 const WALLS: &str = "tests/programs";
 
-/// Runs all, or a few of them for a few seconds.
+/// Runs all programs, or a few of them for a few seconds.
 pub(crate) fn programs(short: bool) -> Result<()> {
     let folder = PathBuf::from("target/programs");
     empty(&folder)?;
@@ -145,7 +145,7 @@ fn sectors_in(bytes: &[u8]) -> Option<Vec<u16>> {
     Some(distances.chunks_exact(2).map(|pair| u16::from_le_bytes([pair[0], pair[1]])).collect())
 }
 
-/// The numbers of a list of pins in a sketch.
+/// Returns the numbers of a list of pins in a sketch.
 fn pins(text: &str, list: &str) -> Option<Vec<u8>> {
     let (_, rest) = text.split_once(&format!(" {list}[] = {{"))?;
     let (inside, _) = rest.split_once('}')?;

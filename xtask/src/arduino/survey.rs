@@ -13,7 +13,7 @@ use crate::steps::output;
 
 const MODULES: usize = 4;
 const PINS: [u8; 2 * MODULES] = [2, 3, 4, 5, 2, 3, 4, 5];
-/// The sketch is through after 28 s.
+/// Time that the sketch may take; it ends after 28 s.
 const SECONDS: u32 = 29;
 /// Modules that hear each other within this time, in microseconds, must be found; what takes longer is seen at few
 /// leads.

@@ -1,4 +1,4 @@
-//! The ready tables: what `eeruf design` finds for rings of HC-SR04 modules.
+//! The ready tables: results of `eeruf design` for rings of HC-SR04 modules.
 
 use std::fmt::Write as _;
 use std::path::Path;

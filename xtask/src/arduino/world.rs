@@ -1,4 +1,4 @@
-//! The simulated world around an Uno, and what a sketch said in it.
+//! The simulated world around an Uno, and a sketch's output in it.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -14,7 +14,7 @@ use crate::steps::{need, output, run, skip};
 
 /// The room of the examples, in which modules hear each other.
 pub(super) const SCENE: &str = "scenes/alcove-hc-sr04.toml";
-/// The ways, for those who have no Rust.
+/// The paths as a file, for users without Rust.
 pub(super) const KEPT: &str = "c/arduino/world/alcove.txt";
 /// A reading is wrong if it is off by more: 0.3 ms of echo time.
 const OFF_MM: u32 = 50;
@@ -31,12 +31,12 @@ pub(super) struct Heard {
     accepted: u32,
     by_module: BTreeMap<usize, u32>,
     wrong: u32,
-    /// The wrong ones that were a module's own echo on another way, measured as it came.
+    /// Wrong readings that were a module's own echo on another path, measured correctly.
     own_later: u32,
     right_by_module: BTreeMap<usize, u32>,
-    /// Time when the sketch first said that it is too slow, in milliseconds.
+    /// Time of the sketch's first message that it is too slow, in milliseconds.
     slow_ms: Option<u32>,
-    /// The wrong ones by cause: a module's own sound on another way, its own of an earlier firing, another's.
+    /// Wrong readings by cause: a module's own sound on another path, its own of an earlier firing, another's.
     by_cause: [u32; 3],
 }
 
@@ -85,7 +85,7 @@ fn echo_times(modules: usize) -> Result<(PathBuf, BTreeMap<usize, u32>)> {
     Ok((file, own_mm))
 }
 
-/// The distance that each module should measure, by the paths of sound.
+/// Returns the distance that each module should measure, from the paths of sound.
 pub(super) fn own_walls(times: &str) -> BTreeMap<usize, u32> {
     let mut own_mm = BTreeMap::new();
     for line in times.lines() {
@@ -266,7 +266,7 @@ impl Heard {
         format!("{} | {firings:.1} | {:.1} | {wrong:.1} %", self.stack, per_second(self.accepted))
     }
 
-    /// Returns true if the sketch did what it is for.
+    /// Returns true if the sketch did its job.
     pub(super) fn is_plausible(&self, example: &Example) -> Result<()> {
         let least = self.firings.iter().min().copied().unwrap_or(0);
         let most = self.firings.iter().max().copied().unwrap_or(0);

@@ -26,12 +26,12 @@ pub(super) const FLOW_RING: [&str; 2] = ["ring_restart", "ring_poll"];
 /// Target of a call through a pointer.
 const POINTER: &str = "a function by its pointer";
 
-/// Stacks are read off Thumb code.
+/// Returns true if stacks can be read: in Thumb code.
 pub(super) fn is_read_on(board: &Board) -> bool {
     BOARDS[..2].iter().any(|known| known.name == board.name)
 }
 
-/// The worst stack of each function of a program, in bytes.
+/// Returns the worst stack of each function of a program, in bytes.
 pub(super) fn stack<const N: usize>(
     board: &Board,
     program: &str,
@@ -60,7 +60,7 @@ struct Program {
 }
 
 impl Program {
-    /// From what `readelf --stack-sizes` and `objdump -d` say.
+    /// Parses the output of `readelf --stack-sizes` and `objdump -d`.
     fn new(sizes: &str, disassembly: &str, all_known: bool) -> Self {
         let mut frames = BTreeMap::new();
         for line in sizes.lines() {
@@ -93,7 +93,7 @@ impl Program {
         Self { frames, calls, all_known }
     }
 
-    /// The calls are a tree: core has no recursion. A path deeper than any there is would be one.
+    /// Follows the calls, a tree since core has no recursion; a path deeper than any possible one would be recursion.
     fn worst(&self, name: &str, depth: u32) -> Result<u64, String> {
         if depth > 64 {
             return Err(format!("{name} calls itself"));

@@ -1,4 +1,4 @@
-//! The tables of `tests/data/boards.txt`, and what they may not exceed.
+//! The tables of `tests/data/boards.txt`, and their limits.
 
 use anyhow::{Context as _, Result, bail};
 
@@ -6,20 +6,20 @@ use super::{BOARDS, Board, build, c_example, cargo, expect, in_the_loop, on_targ
 use crate::measured::{self, Tables};
 use crate::toolchain::{DEBIAN_RUSTC, is_debian, most_bytes, version_of};
 
-/// Budgets of a ring of twelve on the Cortex-M0: (name in the measured lines, most instructions).
+/// Budgets of a ring of twelve on the Cortex-M0: name in the measured lines, most instructions.
 const INSTRUCTIONS: [(&str, u32); 6] =
     [("idle_poll", 44), ("fire", 116), ("echo", 69), ("stamp", 60), ("reading", 507), ("reading_late", 2306)];
 /// Budgets of a flow ring. `mean_reading` is of all readings of the measured world, six in ten of them not believed.
 const FLOW_INSTRUCTIONS: [(&str, u32); 3] = [("fire", 333), ("reading_moving", 2201), ("mean_reading", 899)];
 /// Programs of a flow ring of twelve: instructions and size.
 const FLOW: [&str; 2] = ["flow-instructions", "size-flow-12"];
-/// Compilers differ: only more than the budget and this part of it fails.
+/// Share of a budget by which compilers may exceed it.
 const LEEWAY: f64 = 0.05;
 const FLASH: u64 = 5480;
 const RAM: u64 = 12 * 32 + 92;
 const STACK: u64 = 624;
 
-/// The tables of all boards or of one, and which budgets are exceeded. Only of all boards there is the simulated world.
+/// Returns the tables of all boards or of one, and exceeded budgets. The simulated world needs all boards.
 pub(super) fn measure(only: Option<&str>) -> Result<(Tables, Vec<String>)> {
     let boards = || BOARDS.iter().filter(|board| only.is_none_or(|only| only == board.name));
     let mut tables = Tables::new();
@@ -114,12 +114,12 @@ pub(super) fn measure(only: Option<&str>) -> Result<(Tables, Vec<String>)> {
     Ok((tables, over))
 }
 
-/// The budgets are those of the smallest core.
+/// Returns true for the smallest core, to which the budgets apply.
 fn is_budgeted(board: &Board) -> bool {
     board.name == BOARDS[0].name
 }
 
-/// Rows of the lines `name fewest most`.
+/// Makes rows from the lines `name fewest most`.
 fn of_calls(board: &Board, said: &str) -> Result<String> {
     let mut text = String::new();
     for line in said.lines() {

@@ -144,7 +144,7 @@ typedef struct EerufSchedule {
     uint16_t version;       /* EERUF_VERSION */
     uint8_t sensors;        /* 1 to 64 */
     uint8_t phases;         /* 1 to 8; two to be verified */
-    const uint8_t *order;   /* [phases][sensors]: the sensors as they fire */
+    const uint8_t *order;   /* [phases][sensors]: the sensors in firing order */
     const uint32_t *gap_us; /* [phases][sensors + 1]: from each firing to the one before; from the last to the end */
     uint32_t period_us;     /* T_p */
     uint32_t min_refire_us; /* the shortest time between two firings of one sensor */

@@ -90,7 +90,7 @@ class Scenes:
         return make(self.numbers[index], self.physics)
 
     def __iter__(self) -> Iterator[_eeruf.Scene]:
-        """Make one after the other."""
+        """Make the objects one after the other."""
         return (self[index] for index in range(len(self)))
 
     def __eq__(self, other: object) -> bool:

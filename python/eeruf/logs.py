@@ -83,7 +83,7 @@ class Agree:
 
 @dataclass(frozen=True)
 class Crosstalk:
-    """A verdict on whether the sensors of a log read each other's sound; docs/how-to/logs.md says how that is told.
+    """A verdict on whether the sensors of a log read each other's sound; docs/how-to/logs.md says how it is found.
 
     ``verdict`` is ``"crosstalk"``, ``"none seen"`` or ``"cannot tell"``, for ``reasons``; ``fooled`` are sensors that read foreign sound,
     ``pairs`` those that read each other's. ``record`` says what to record if the log cannot tell, ``suspects`` are sensors that may be

@@ -1,4 +1,4 @@
-//! The files that a user names: what may stand in them, what is wrong with them, and writing those that are asked for.
+//! The files that a user names: their contents and errors, and writing output files.
 //!
 //! Uses the libraries only; knows neither commands nor what is printed.
 

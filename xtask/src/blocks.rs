@@ -1,4 +1,4 @@
-//! Parts of documents that are made elsewhere. What a program printed has a comment before it that says which, and
+//! Parts of documents that are made elsewhere. A program's output has a comment before it with the command, and
 //! `<!-- end -->` behind it. A listing is a part of a compiled file: `<!-- listing: FILE [from TEXT] [to TEXT] -->`
 //! before a code block says which.
 

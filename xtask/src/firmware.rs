@@ -77,8 +77,8 @@ fn lint() -> Result<()> {
     run(cargo(microbit)?.args(strict).args(["--target", microbit.target, "--", "--deny", "warnings"]))
 }
 
-/// `cargo` for a board, in the firmware's own workspace. Where stacks are read, the compiler writes down each frame,
-/// beside the program, by an unstable option.
+/// `cargo` for a board, in the firmware's own workspace. To read stacks, an unstable option has the compiler write
+/// each frame's size into the program.
 fn cargo(board: &Board) -> Result<Command> {
     let mut cargo = cargo_for_target(board.target)?;
     cargo.current_dir("firmware");

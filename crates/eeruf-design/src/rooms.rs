@@ -156,7 +156,7 @@ impl RingSpec {
     /// can have, without judging other conditions; `None` if no way can fire it.
     ///
     /// # Errors
-    /// As there.
+    /// See [`judge_in_rooms`](Self::judge_in_rooms).
     pub fn recommended_in_rooms(
         &self,
         design: Option<&RingDesign>,

@@ -98,7 +98,7 @@ impl RingSpec {
     /// Returns the description of a way judged in rooms; `None` for one that no program can use.
     ///
     /// # Errors
-    /// As [`fired`](Self::fired).
+    /// See [`fired`](Self::fired).
     pub fn how(&self, judged: &RoomWay) -> Result<Option<How>, String> {
         let Some(way) = Way::of(judged) else { return Ok(None) };
         if way == Way::TwoPhases {

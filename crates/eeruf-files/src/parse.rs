@@ -97,7 +97,7 @@ fn syntax(line: &str, error: &str) -> Option<String> {
 /// Reads a TOML text and builds its meaning.
 ///
 /// # Errors
-/// As [`parse`], or the builder's message, at the line of the first key that it names.
+/// Those of [`parse`], or the builder's message, at the line of the first key that it names.
 ///
 /// ```
 /// #[derive(serde::Deserialize)]

@@ -94,7 +94,7 @@ pub mod as_file {
     /// Reads a schedule.
     ///
     /// # Errors
-    /// As [`ScheduleFile::schedule`], and those of the deserializer.
+    /// Those of [`ScheduleFile::schedule`], and those of the deserializer.
     pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<AnySchedule, D::Error> {
         ScheduleFile::deserialize(deserializer)?.schedule().map_err(D::Error::custom)
     }

@@ -67,7 +67,7 @@ impl<P: Plan, J: Judge, T: OutputPin, I: InputPin, D: DelayNs, const K: usize, c
     /// Like [`new`](HcSr04Ring::new), with the queue that the edge interrupt fills. Each poll reads its edges first.
     ///
     /// # Errors
-    /// As there.
+    /// See [`new`](HcSr04Ring::new).
     pub fn with_edges(
         ring: Ring<P, J, K, 1, H>,
         pins: [Pins<T, I>; K],
@@ -258,7 +258,7 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize, Q> HcSr04Ring<R
     /// Like [`Ring::set_report_after`].
     ///
     /// # Errors
-    /// As there.
+    /// See [`Ring::set_report_after`].
     pub fn set_report_after(&mut self, report_after: Micros) -> Result<(), RingError> {
         self.ring.set_report_after(report_after)
     }
@@ -268,7 +268,7 @@ impl<P: Plan, T, I, D, const K: usize, const H: usize, Q> HcSr04Ring<Ring<P, Ech
     /// Like [`Ring::set_t_delta`].
     ///
     /// # Errors
-    /// As there.
+    /// See [`Ring::set_t_delta`].
     pub fn set_t_delta(&mut self, t_delta: Micros) -> Result<(), RingError> {
         self.ring.set_t_delta(t_delta)
     }
@@ -278,7 +278,7 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize, Q> HcSr04Ring<R
     /// Like [`Ring::set_window`].
     ///
     /// # Errors
-    /// As there.
+    /// See [`Ring::set_window`].
     pub fn set_window(&mut self, window: Micros) -> Result<(), RingError> {
         self.ring.set_window(window)
     }
@@ -286,7 +286,7 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize, Q> HcSr04Ring<R
     /// Like [`Ring::set_blanking`].
     ///
     /// # Errors
-    /// As there.
+    /// See [`Ring::set_blanking`].
     pub fn set_blanking(&mut self, blanking: Micros) -> Result<(), RingError> {
         self.ring.set_blanking(blanking)
     }

@@ -57,7 +57,7 @@ pub fn read_log(
 /// bytes do not show the form. An `SQLite` file is copied into a temporary one first.
 ///
 /// # Errors
-/// As [`read_log`].
+/// See [`read_log`].
 pub fn read_from(
     mut input: impl Read + Seek,
     name: &Path,
@@ -77,7 +77,7 @@ pub fn read_from(
 /// line are read as they arrive; a bag is copied into a temporary file first.
 ///
 /// # Errors
-/// As [`read_log`].
+/// See [`read_log`].
 pub fn read_stream(
     mut input: impl Read,
     name: &Path,

@@ -35,7 +35,7 @@ impl FiringLog {
     /// bytes do not show the form.
     ///
     /// # Errors
-    /// As [`FiringLog::read`].
+    /// See [`FiringLog::read`].
     pub fn read_from(mut input: impl Read, name: &Path) -> Result<Self, FileError> {
         let failed = |error: io::Error| FileError::reading(name, &error);
         let first = form::first_bytes(&mut input).map_err(failed)?;

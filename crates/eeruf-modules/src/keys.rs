@@ -4,7 +4,7 @@ use core::fmt;
 
 use crate::module::{Beam, Gain, Interface, Module, NoEcho};
 
-/// A figure of a module by its name in files.
+/// A figure of a module, under its name in files.
 #[derive(Clone, Copy, Debug)]
 pub struct Key {
     /// The name.

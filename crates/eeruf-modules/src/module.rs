@@ -48,7 +48,7 @@ macro_rules! words {
         }
 
         impl $name {
-            /// Every one, by its name in files.
+            /// All variants, with their names in files.
             pub const NAMES: [(&'static str, Self); [$($word),+].len()] = [$(($word, Self::$variant)),+];
 
             /// The name in files.

@@ -18,7 +18,7 @@ pub struct Preset {
     pub module: &'static Module,
     /// The name as its maker writes it.
     pub title: &'static str,
-    /// The source of each figure, by its name in files.
+    /// The source of each figure, under the figure's name in files.
     pub sources: &'static [(&'static [&'static str], Source)],
 }
 

@@ -38,7 +38,7 @@ pub(crate) fn from_pose(pose: &Pose) -> PoseOf {
     (pose.translation.x, pose.translation.y, heading_rad(pose))
 }
 
-/// The motion out of keyword arguments.
+/// Reads a motion from keyword arguments.
 pub(crate) fn motion(
     velocity_m_s: Option<&Bound<'_, PyAny>>,
     turn_rad_s: Option<&Bound<'_, PyAny>>,

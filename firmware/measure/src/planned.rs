@@ -13,7 +13,7 @@ use crate::{Range, counts};
 /// Makes the flow ring of all measurements.
 ///
 /// # Errors
-/// As [`FlowRing::flow`].
+/// See [`FlowRing::flow`].
 #[inline(always)]
 pub const fn flow<const K: usize>(now: Instant) -> Result<FlowRing<K>, RingError> {
     let config = RingConfig::new().with_window(Micros::from_millis(36));

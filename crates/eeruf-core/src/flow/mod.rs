@@ -75,11 +75,11 @@ impl<const K: usize, const E: usize> FlowRing<K, E> {
 }
 
 impl<const K: usize, const E: usize, U: OwnLimits> FlowRing<K, E, U> {
-    /// Makes a ring like [`flow`](FlowRing::flow), for sensors that have limits of their own. What `config` and the
-    /// `t_delta` of `belief` say is the most for all.
+    /// Makes a ring like [`flow`](FlowRing::flow), for sensors that have limits of their own. `config` and the
+    /// `t_delta` of `belief` are the upper limits for all.
     ///
     /// # Errors
-    /// As there.
+    /// See [`flow`](FlowRing::flow).
     #[inline(always)]
     pub fn with_limits(
         sensors: usize,

@@ -107,7 +107,7 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
     /// all.
     ///
     /// # Errors
-    /// As there.
+    /// See [`new`](InTurn::new).
     pub fn with_limits(
         sensors: usize,
         own_limits: U,

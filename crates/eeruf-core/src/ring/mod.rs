@@ -390,7 +390,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     /// `settled` or later, unless another sensor's reading is emitted first.
     ///
     /// # Errors
-    /// As there.
+    /// See [`echo`](Self::echo).
     #[inline]
     pub fn echo_until(&mut self, sensor: u8, at: Instant, settled: Instant) -> Result<(), SensorError> {
         self.hear(sensor, at, Micros::ZERO, settled)
@@ -497,7 +497,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     /// See [`echo_between`](Self::echo_between).
     ///
     /// # Errors
-    /// As there.
+    /// See [`echo_between`](Self::echo_between).
     pub fn measured_between(&mut self, sensor: u8, least: Micros, most: Micros) -> Result<(), RingError> {
         let fired = self.sensor_mut(sensor)?.fired();
         let Some(width) = most.checked_sub(least) else {

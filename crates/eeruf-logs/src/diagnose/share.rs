@@ -5,7 +5,7 @@
 pub struct Share {
     /// Trials that count.
     pub count: u32,
-    /// All trials.
+    /// Number of trials.
     pub of: u32,
 }
 

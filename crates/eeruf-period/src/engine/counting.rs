@@ -177,7 +177,7 @@ pub(crate) fn capacity(merged: &Merged) -> u32 {
 pub(crate) enum Bound {
     /// The window plus all `|d|` with their separation; the smallest is at least `least`.
     Capacity { sensors: u32, separation: u32, window: u32, least: u32 },
-    /// Sensors that all have gaps to each other fire one after the other; `own` passes after the last of them.
+    /// Sensors that all have gaps to each other fire one after the other, and then `own` passes.
     Clique { sensors: u32, interval: u32, own: u32 },
     /// At most this many sensors can keep their interval at the same time, with `own` after a sensor's second firing.
     Density { sensors: u32, at_once: u32, interval: u32, own: u32 },

@@ -13,7 +13,7 @@ use crate::{methods::Method, results::Readings, threads::Stop, world::World};
 /// scene before.
 ///
 /// # Errors
-/// As [`simulate`](super::simulate); with no world, [`SimulationError::Stopped`].
+/// Those of [`simulate`](super::simulate); with no world, [`SimulationError::Stopped`].
 pub(crate) fn simulate_in_turn(
     worlds: &[World],
     each: u32,

@@ -127,7 +127,7 @@ impl Entry {
     /// does `keep_going`, which is sometimes called with the passed share of the time, if it returns `false`.
     ///
     /// # Errors
-    /// As [`simulate`](crate::simulate()), and for what the caller's own code refuses.
+    /// Those of [`simulate`](crate::simulate()), and for what the caller's own code refuses.
     pub fn simulate(
         &self,
         world: &World,

@@ -29,7 +29,7 @@ impl<'w> LockStep<'w> {
     /// A world in which nothing has fired yet. The robot's `blanking` and `window` limit when its sensors hear.
     ///
     /// # Errors
-    /// As [`simulate`](crate::simulate()).
+    /// See [`simulate`](crate::simulate()).
     pub fn new(world: &'w World) -> Result<Self, PathsError> {
         // A world has at least one robot.
         let robot = &world.robots()[0];
@@ -47,7 +47,7 @@ impl<'w> LockStep<'w> {
     /// its window.
     ///
     /// # Errors
-    /// As [`simulate`](crate::simulate()), for robots that move.
+    /// Those of [`simulate`](crate::simulate()), for robots that move.
     pub fn fire(&mut self, sensor: usize, at_ns: u64) -> Result<(), PathsError> {
         let Some(receiver) = self.receivers.get_mut(sensor) else { return Ok(()) };
         self.channels.prepare(sensor, at_ns, &Planned(self.world), None)?;

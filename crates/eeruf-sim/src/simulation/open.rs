@@ -62,7 +62,7 @@ impl Simulation {
     /// another thread.
     ///
     /// # Errors
-    /// As [`simulate`](crate::simulate()).
+    /// See [`simulate`](crate::simulate()).
     pub fn new(world: Arc<World>, method: Method, options: &Options, stop: Stop) -> Result<Self, SimulationError> {
         Self::until(world, method, options, Own::new(), None, stop)
     }
@@ -71,8 +71,7 @@ impl Simulation {
     /// For a robot with its own firing but no filter, the method's judge is used.
     ///
     /// # Errors
-    /// As [`simulate`](crate::simulate()); an own part for a robot out of range, or a first period that cannot be
-    /// fired.
+    /// Those of [`simulate`](crate::simulate()); a part for no robot, or a first period that cannot be fired.
     pub fn with_own(
         world: Arc<World>,
         method: Method,
@@ -87,7 +86,7 @@ impl Simulation {
     /// reported.
     ///
     /// # Errors
-    /// As [`simulate`](crate::simulate()).
+    /// See [`simulate`](crate::simulate()).
     pub fn ending(
         world: Arc<World>,
         method: Method,
@@ -160,7 +159,7 @@ impl Simulation {
     /// seconds. Readings of one moment come together.
     ///
     /// # Errors
-    /// As [`step`](Self::step).
+    /// See [`step`](Self::step).
     ///
     /// ```
     /// use std::sync::Arc;
@@ -195,7 +194,7 @@ impl Simulation {
     /// Like [`step`](Self::step), for this many periods of the first robot.
     ///
     /// # Errors
-    /// As [`step`](Self::step).
+    /// See [`step`](Self::step).
     pub fn step_periods(
         &mut self,
         periods: u32,

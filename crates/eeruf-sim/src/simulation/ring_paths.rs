@@ -15,7 +15,7 @@ impl World {
     /// most. Empty for a robot that does not exist.
     ///
     /// # Errors
-    /// As [`Tracer::trace`].
+    /// See [`Tracer::trace`].
     ///
     /// ```
     /// use eeruf_sim::*;
@@ -38,7 +38,7 @@ impl World {
     /// Finds paths like [`ring_paths`](Self::ring_paths), down to this share of the threshold amplitude.
     ///
     /// # Errors
-    /// As [`Tracer::trace`].
+    /// See [`Tracer::trace`].
     pub fn ring_paths_above(&self, robot: usize, max_order: u32, share: f64) -> Result<CrosstalkMatrix, PathsError> {
         let mut matrix = CrosstalkMatrix::new();
         let Some(of) = self.robots().get(robot) else { return Ok(matrix) };

@@ -31,7 +31,7 @@ pub fn simulate(world: &World, method: Method, options: &Options) -> Result<Read
 /// `false`, it stops with [`SimulationError::Stopped`].
 ///
 /// # Errors
-/// As [`simulate`].
+/// See [`simulate`].
 pub fn simulate_while(
     world: &World,
     method: Method,
@@ -45,7 +45,7 @@ pub fn simulate_while(
 /// before the first event.
 ///
 /// # Errors
-/// As [`simulate`].
+/// See [`simulate`].
 pub fn simulate_until(
     world: &World,
     method: Method,

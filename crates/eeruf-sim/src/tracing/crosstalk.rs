@@ -106,7 +106,7 @@ impl CrosstalkMatrix {
     /// moves.
     ///
     /// # Errors
-    /// As [`Tracer::trace`]; the matrix is empty then.
+    /// Those of [`Tracer::trace`]; the matrix is empty then.
     pub fn compute(&mut self, tracer: &mut Tracer, query: &CrosstalkQuery<'_>) -> Result<(), PathsError> {
         self.fill(tracer, query.sensors, query.transducer, query, None)
     }
@@ -115,7 +115,7 @@ impl CrosstalkMatrix {
     /// among the sensors: for a world in which things move from firing to firing.
     ///
     /// # Errors
-    /// As [`compute`](Self::compute).
+    /// See [`compute`](Self::compute).
     pub fn compute_from(
         &mut self,
         emitter: &Pose,
@@ -129,7 +129,7 @@ impl CrosstalkMatrix {
     /// frequency and pattern of departure, and the sensors' pattern of arrival, gain and floor.
     ///
     /// # Errors
-    /// As [`compute`](Self::compute).
+    /// See [`compute`](Self::compute).
     pub fn compute_between(
         &mut self,
         emitters: &[Pose],

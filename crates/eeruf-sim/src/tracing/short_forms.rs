@@ -13,7 +13,7 @@ use crate::threads::on_all_cores;
 /// The paths of many sources at once, on all cores, in the order of the sources.
 ///
 /// # Errors
-/// As [`Tracer::trace`], for the first source that fails.
+/// Those of [`Tracer::trace`], for the first source that fails.
 pub fn paths_of_many(
     scene: &Scene,
     sources: &[Point],
@@ -32,7 +32,7 @@ impl Scene {
     /// see [`Tracer::trace`], which also reuses memory between queries.
     ///
     /// # Errors
-    /// As [`Tracer::trace`].
+    /// See [`Tracer::trace`].
     ///
     /// ```
     /// use eeruf_sim::{Air, Point, Scene, Wall};

@@ -154,7 +154,7 @@ impl Tracer {
     /// `limits.max_order`; where the scene is flat, heights do not matter.
     ///
     /// # Errors
-    /// As [`trace`](Self::trace), and for a height that is not between floor and ceiling.
+    /// Those of [`trace`](Self::trace), and for a height that is not between floor and ceiling.
     pub fn trace_at(
         &mut self,
         scene: &Scene,
@@ -221,7 +221,7 @@ impl Tracer {
     /// with duplicates at corners. It is comparable with other image-source programs.
     ///
     /// # Errors
-    /// As [`trace`](Self::trace).
+    /// See [`trace`](Self::trace).
     pub fn visible_images(
         &mut self,
         scene: &Scene,

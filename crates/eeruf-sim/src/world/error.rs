@@ -112,7 +112,7 @@ pub enum WorldError {
     Overlap {
         /// The robots.
         robots: (usize, usize),
-        /// Distance of their middles, in metres.
+        /// Distance between their centres, in metres.
         apart_m: f64,
         /// Least distance allowed.
         least_m: f64,

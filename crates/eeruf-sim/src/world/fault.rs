@@ -305,7 +305,7 @@ impl Fault {
 /// The scene with the objects of faults at a time.
 ///
 /// # Errors
-/// As [`Scene::new`].
+/// See [`Scene::new`].
 pub(crate) fn scene_with(scene: &Scene, faults: &[Fault], time_s: f64) -> Result<Scene, WorldError> {
     let (mut walls, mut poles) = (scene.walls().to_vec(), scene.poles().to_vec());
     for fault in faults {

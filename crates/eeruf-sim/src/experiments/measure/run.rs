@@ -40,7 +40,7 @@ pub struct Place {
     pub room: (RoomKind, u64),
     /// The thing's kind, its sensor and its distance in metres; `None` if no thing fitted that its sensor reads.
     pub thing: Option<(ThingKind, usize, f64)>,
-    /// Statistics of drawing the thing.
+    /// Counts of the things drawn.
     pub draws: Draws,
     /// The driving or turning robot's speed in m/s.
     pub speed_m_s: f64,

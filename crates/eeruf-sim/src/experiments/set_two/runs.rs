@@ -188,7 +188,7 @@ pub struct SpeedStep {
 /// Runs Set II at several top speeds.
 ///
 /// # Errors
-/// As [`set_two`].
+/// See [`set_two`].
 pub fn speed_sweep(
     options: &SetTwoOptions,
     speeds_m_s: &[f64],

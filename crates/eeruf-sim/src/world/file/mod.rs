@@ -45,7 +45,7 @@ impl World {
     /// Reads a text; `file` is named in errors, and schedules are looked for beside it.
     ///
     /// # Errors
-    /// As [`from_toml`](Self::from_toml).
+    /// See [`from_toml`](Self::from_toml).
     ///
     /// ```
     /// use eeruf_sim::World;
@@ -66,7 +66,7 @@ impl World {
     /// Reads a text, with a reader for the ring files that robots name, which are looked for beside it too.
     ///
     /// # Errors
-    /// As [`from_toml`](Self::from_toml).
+    /// See [`from_toml`](Self::from_toml).
     pub fn from_text_with(file: &Path, text: &str, read_ring: ReadRing) -> Result<Self, FileError> {
         Self::parse(&Source { file: file.to_owned(), text: text.to_owned() }, read_ring)
     }
@@ -109,7 +109,7 @@ impl WorldParts {
     /// Reads the parts from a text; `file` is named in errors, and schedules are looked for beside it.
     ///
     /// # Errors
-    /// As [`World::from_text`], for what is wrong with the text or the scene.
+    /// Those of [`World::from_text`], for what is wrong with the text or the scene.
     ///
     /// ```
     /// use eeruf_sim::WorldParts;
@@ -126,7 +126,7 @@ impl WorldParts {
     /// Reads a text, with a reader for the ring files that robots name, which are looked for beside it too.
     ///
     /// # Errors
-    /// As [`World::from_text`].
+    /// See [`World::from_text`].
     pub fn from_text_with(file: &Path, text: &str, read_ring: ReadRing) -> Result<Self, FileError> {
         let source = Source { file: file.to_owned(), text: text.to_owned() };
         Self::of(&source, &source.toml()?, read_ring)

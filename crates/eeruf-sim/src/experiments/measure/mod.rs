@@ -8,7 +8,8 @@
 //! degrees of its axis, with a clear line, touching nothing. Where that sensor, alone in quiet air at this pose, does
 //! not read it as its first echo in 9 of 10 firings, a second apart, or reads something as far away without it, another
 //! thing is drawn, and the share of those is the module's blindness. The trial ends 5 s later, when the robot would
-//! touch the thing, or when all settings have seen it.
+//! touch the thing, or when all settings have seen it. Paths of a robot that moves are searched for every 6 cm or 6
+//! degrees, once for all ways of firing, and carried on to each firing.
 //!
 //! **Seen** is the thing at the first belief within 8.6 cm of its nearest point, of any sensor whose reading alone
 //! would be that. Latency counts from its appearing to the end of the echo that completes the belief. The **t95** is

@@ -30,6 +30,9 @@ pub const NEVER_S: f64 = 5.0;
 const LONGEST_S: f64 = APPEARS_S[1] + NEVER_S;
 /// The random key of trials, beside those of the kinds of rooms.
 const THING: u64 = 200;
+/// Paths of a robot that moves are searched for again after this way in metres, and after this turn in degrees.
+const STEP_M: f64 = 0.06;
+const STEP_DEG: f64 = 6.0;
 /// Times after the thing's appearing at which a trial may end, as it is seen, in seconds.
 const LOOKS_S: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 3.5];
 /// From one look for contact to the next, in seconds.
@@ -153,8 +156,10 @@ impl Trial {
     fn drawn(plan: RoomPlan, world: &World, speeds: Speeds, appears_s: f64, random: Random) -> Self {
         let c = world.scene().air().speed_of_sound();
         let moves = speeds.speed_m_s > 0.0 || speeds.turn_rad_s != 0.0;
+        let step_s = (STEP_M / speeds.speed_m_s).min(STEP_DEG.to_radians() / speeds.turn_rad_s.abs());
+        let shared = moves.then(|| [(); 2].map(|()| Arc::new(SharedPaths::new(step_s))));
         let (draws, ends_s) = (Draws::default(), appears_s + NEVER_S);
-        let mut trial = Self { plan, thing: None, draws, appears_s, ends_s, speeds, c };
+        let mut trial = Self { plan, thing: None, draws, appears_s, ends_s, speeds, c, shared };
         let pose = trial.pose(world, appears_s);
         let drawn = Thing::draw(random, &trial.plan, world, &pose, &mut trial.draws);
         let Some(thing) = drawn else { return trial };
@@ -198,7 +203,8 @@ impl Trial {
         let Speeds { speed_m_s, turn_rad_s } = self.speeds;
         let world = self.plan.moving(&way.robot, speed_m_s, turn_rad_s)?.with_room(Some(Room::DEFAULT))?;
         let world = Arc::new(world.with_physics(Physics::DEFAULT)?);
-        self.heard_in(&world, (way.method, &way.options), |thing, _| thing.scene(&self.plan), until_seen, keep_going)
+        let (how, shared) = ((way.method, &way.options), self.shared.as_ref());
+        self.heard_in(&world, how, |thing, _| thing.scene(&self.plan), (until_seen, shared), keep_going)
     }
 
     /// Readings in a scene of the caller's, by a method.
@@ -209,7 +215,7 @@ impl Trial {
         keep_going: &dyn Fn() -> bool,
     ) -> Result<Vec<Heard>, ExperimentError> {
         let options = Options { seed: Some(self.plan.number), ..Options::default() };
-        self.heard_in(&Arc::new(world.clone()), (method, &options), Thing::added_to, true, keep_going)
+        self.heard_in(&Arc::new(world.clone()), (method, &options), Thing::added_to, (true, None), keep_going)
     }
 
     fn heard_in(
@@ -217,11 +223,14 @@ impl Trial {
         world: &Arc<World>,
         (method, options): (Method, &Options),
         with: impl Fn(&Thing, &Scene) -> Result<Scene, SceneError>,
-        until_seen: bool,
+        (until_seen, shared): (bool, Option<&[Arc<SharedPaths>; 2]>),
         keep_going: &dyn Fn() -> bool,
     ) -> Result<Vec<Heard>, ExperimentError> {
         let (speed_m_s, robot) = (self.speeds.speed_m_s, &world.robots()[0]);
         let mut simulation = Simulation::new(Arc::clone(world), method, options, Stop::default())?;
+        if let Some([before, _]) = shared {
+            simulation.share(Arc::clone(before));
+        }
         let legs = self.leg_s().map_or(0, |leg_s| (self.ends_s / leg_s) as u32);
         let turns = (1..=legs).map(|leg| (self.leg_s().unwrap_or_default() * f64::from(leg), Event::Turns(leg)));
         let looks = LOOKS_S.map(|late_s| (self.appears_s + late_s, Event::Looks)).into_iter();

@@ -287,22 +287,30 @@ impl Channels {
         let at = shared.instant(now);
         self.set_poses(at, kinematics);
         // Whoever found them was where this one is at that instant.
-        let snapshot = match shared.get(at, emitter).filter(|known| known.poses == self.poses) {
-            Some(known) => known,
-            None => {
-                let mut snapshot = Snapshot { poses: self.poses.clone(), groups: vec![] };
-                for listeners in self.hearing(emitter, receivers) {
-                    self.search(&[emitter], &listeners, None)?;
-                    snapshot.groups.push((listeners, self.matrix.clone()));
-                }
-                shared.put(at, emitter, snapshot)
-            }
+        let known = shared.get(at, emitter).filter(|known| known.poses == self.poses);
+        let known = match known {
+            Some(known) => Ok(known),
+            None => self.snapshot(emitter, receivers).map(|found| shared.put(at, emitter, found)),
         };
         self.set_poses(now, kinematics);
-        for (listeners, matrix) in &snapshot.groups {
-            self.hand_out(&[emitter], listeners, matrix, Some(&snapshot.poses), matters, &mut found);
+        // Where it will be at that instant, or would have been, may be in a wall.
+        let Ok(Snapshot { poses, groups }) = known.as_deref() else {
+            return self.trace(&[emitter], receivers, matters, found);
+        };
+        for (listeners, matrix) in groups {
+            self.hand_out(&[emitter], listeners, matrix, Some(poses), matters, &mut found);
         }
         Ok(())
+    }
+
+    /// The paths from an emitter to all that hear it where they are.
+    fn snapshot(&mut self, emitter: usize, receivers: &[usize]) -> Result<Snapshot, PathsError> {
+        let mut snapshot = Snapshot { poses: self.poses.clone(), groups: vec![] };
+        for listeners in self.hearing(emitter, receivers) {
+            self.search(&[emitter], &listeners, None)?;
+            snapshot.groups.push((listeners, self.matrix.clone()));
+        }
+        Ok(snapshot)
     }
 
     /// Sensors of one kind together, those of robots with a body or a mounting that carries sound each on their own.

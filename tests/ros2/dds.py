@@ -2,6 +2,7 @@
 
 import os
 import time
+import types
 from dataclasses import dataclass
 
 # Read when the domain is made.
@@ -13,7 +14,7 @@ os.environ["CYCLONEDDS_URI"] = """<CycloneDDS><Domain>
 
 from cyclonedds.core import Policy, Qos
 from cyclonedds.idl import IdlStruct
-from cyclonedds.idl.types import array, float32, float64, int32, sequence, uint8, uint32
+from cyclonedds.idl.types import array, float32, float64, int32, int64, sequence, uint8, uint32
 from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 from cyclonedds.util import duration
@@ -27,149 +28,53 @@ PATIENCE_S = 60
 OK, WARN, ERROR = 0, 1, 2
 
 
-@dataclass
-class Time(IdlStruct, typename="builtin_interfaces::msg::dds_::Time_"):
-    sec: int32
-    nanosec: uint32
+def message(typename, /, **fields):
+    """The type of a message, as `std_msgs/Header`, or of a service's part, as `rcl_interfaces/srv/GetParameters_Request`."""
+    *package, name = typename.split("/")
+    package = "::".join(package if len(package) == 2 else [*package, "msg"])
+    body = {"__annotations__": fields, "__module__": __name__}
+    made = types.new_class(name, (IdlStruct,), {"typename": f"{package}::dds_::{name}_"}, lambda own: own.update(body))
+    return dataclass(made)
 
 
-@dataclass
-class Header(IdlStruct, typename="std_msgs::msg::dds_::Header_"):
-    stamp: Time
-    frame_id: str
+def numbers(kind, names):
+    return dict.fromkeys(names.split(), kind)
 
 
-@dataclass
-class Range(IdlStruct, typename="sensor_msgs::msg::dds_::Range_"):
-    header: Header
-    radiation_type: uint8
-    field_of_view: float32
-    min_range: float32
-    max_range: float32
-    range: float32
-    variance: float32
-
-
-@dataclass
-class KeyValue(IdlStruct, typename="diagnostic_msgs::msg::dds_::KeyValue_"):
-    key: str
-    value: str
-
-
-@dataclass
-class DiagnosticStatus(IdlStruct, typename="diagnostic_msgs::msg::dds_::DiagnosticStatus_"):
-    level: uint8
-    name: str
-    message: str
-    hardware_id: str
-    values: sequence[KeyValue]
-
-
-@dataclass
-class DiagnosticArray(IdlStruct, typename="diagnostic_msgs::msg::dds_::DiagnosticArray_"):
-    header: Header
-    status: sequence[DiagnosticStatus]
-
-
-@dataclass
-class PointField(IdlStruct, typename="sensor_msgs::msg::dds_::PointField_"):
-    name: str
-    offset: uint32
-    datatype: uint8
-    count: uint32
-
-
-@dataclass
-class PointCloud2(IdlStruct, typename="sensor_msgs::msg::dds_::PointCloud2_"):
-    header: Header
-    height: uint32
-    width: uint32
-    fields: sequence[PointField]
-    is_bigendian: bool
-    point_step: uint32
-    row_step: uint32
-    data: sequence[uint8]
-    is_dense: bool
-
-
-@dataclass
-class LaserScan(IdlStruct, typename="sensor_msgs::msg::dds_::LaserScan_"):
-    header: Header
-    angle_min: float32
-    angle_max: float32
-    angle_increment: float32
-    time_increment: float32
-    scan_time: float32
-    range_min: float32
-    range_max: float32
-    ranges: sequence[float32]
-    intensities: sequence[float32]
-
-
-@dataclass
-class Vector3(IdlStruct, typename="geometry_msgs::msg::dds_::Vector3_"):
-    x: float64 = 0.0
-    y: float64 = 0.0
-    z: float64 = 0.0
-
-
-@dataclass
-class Quaternion(IdlStruct, typename="geometry_msgs::msg::dds_::Quaternion_"):
-    x: float64
-    y: float64
-    z: float64
-    w: float64
-
-
-@dataclass
-class Transform(IdlStruct, typename="geometry_msgs::msg::dds_::Transform_"):
-    translation: Vector3
-    rotation: Quaternion
-
-
-@dataclass
-class TransformStamped(IdlStruct, typename="geometry_msgs::msg::dds_::TransformStamped_"):
-    header: Header
-    child_frame_id: str
-    transform: Transform
-
-
-@dataclass
-class TFMessage(IdlStruct, typename="tf2_msgs::msg::dds_::TFMessage_"):
-    transforms: sequence[TransformStamped]
-
-
-@dataclass
-class Pose(IdlStruct, typename="geometry_msgs::msg::dds_::Pose_"):
-    position: Vector3
-    orientation: Quaternion
-
-
-@dataclass
-class PoseWithCovariance(IdlStruct, typename="geometry_msgs::msg::dds_::PoseWithCovariance_"):
-    pose: Pose
-    covariance: array[float64, 36]
-
-
-@dataclass
-class Twist(IdlStruct, typename="geometry_msgs::msg::dds_::Twist_"):
-    linear: Vector3
-    angular: Vector3
-
-
-@dataclass
-class TwistWithCovariance(IdlStruct, typename="geometry_msgs::msg::dds_::TwistWithCovariance_"):
-    twist: Twist
-    covariance: array[float64, 36]
-
-
-@dataclass
-class Odometry(IdlStruct, typename="nav_msgs::msg::dds_::Odometry_"):
-    header: Header
-    child_frame_id: str
-    pose: PoseWithCovariance
-    twist: TwistWithCovariance
-
+Time = message("builtin_interfaces/Time", sec=int32, nanosec=uint32)
+Header = message("std_msgs/Header", stamp=Time, frame_id=str)
+SPAN = numbers(float32, "field_of_view min_range max_range range variance")
+Range = message("sensor_msgs/Range", header=Header, radiation_type=uint8, **SPAN)
+KeyValue = message("diagnostic_msgs/KeyValue", key=str, value=str)
+WORDS = numbers(str, "name message hardware_id")
+DiagnosticStatus = message("diagnostic_msgs/DiagnosticStatus", level=uint8, **WORDS, values=sequence[KeyValue])
+DiagnosticArray = message("diagnostic_msgs/DiagnosticArray", header=Header, status=sequence[DiagnosticStatus])
+PointField = message("sensor_msgs/PointField", name=str, offset=uint32, datatype=uint8, count=uint32)
+SHAPE = {"height": uint32, "width": uint32, "fields": sequence[PointField], "is_bigendian": bool}
+STEPS = {"point_step": uint32, "row_step": uint32, "data": sequence[uint8], "is_dense": bool}
+PointCloud2 = message("sensor_msgs/PointCloud2", header=Header, **SHAPE, **STEPS)
+RAYS = numbers(float32, "angle_min angle_max angle_increment time_increment scan_time range_min range_max")
+LISTS = numbers(sequence[float32], "ranges intensities")
+LaserScan = message("sensor_msgs/LaserScan", header=Header, **RAYS, **LISTS)
+Vector3 = message("geometry_msgs/Vector3", **numbers(float64, "x y z"))
+Quaternion = message("geometry_msgs/Quaternion", **numbers(float64, "x y z w"))
+Transform = message("geometry_msgs/Transform", translation=Vector3, rotation=Quaternion)
+TransformStamped = message("geometry_msgs/TransformStamped", header=Header, child_frame_id=str, transform=Transform)
+TFMessage = message("tf2_msgs/TFMessage", transforms=sequence[TransformStamped])
+Pose = message("geometry_msgs/Pose", position=Vector3, orientation=Quaternion)
+PoseWithCovariance = message("geometry_msgs/PoseWithCovariance", pose=Pose, covariance=array[float64, 36])
+Twist = message("geometry_msgs/Twist", linear=Vector3, angular=Vector3)
+TwistWithCovariance = message("geometry_msgs/TwistWithCovariance", twist=Twist, covariance=array[float64, 36])
+MOTION = {"pose": PoseWithCovariance, "twist": TwistWithCovariance}
+Odometry = message("nav_msgs/Odometry", header=Header, child_frame_id=str, **MOTION)
+WHERE = {"file": str, "function": str, "line": uint32}
+Log = message("rcl_interfaces/Log", stamp=Time, level=uint8, name=str, msg=str, **WHERE)
+VALUES = {"bool_value": bool, "integer_value": int64, "double_value": float64, "string_value": str}
+ARRAYS = {"bytes": uint8, "bools": bool, "integers": int64, "doubles": float64, "strings": str}
+ARRAYS = {name: sequence[kind] for name, kind in ARRAYS.items()}
+ParameterValue = message("rcl_interfaces/ParameterValue", type=uint8, **VALUES, **ARRAYS)
+Parameter = message("rcl_interfaces/Parameter", name=str, value=ParameterValue)
+SetParametersResult = message("rcl_interfaces/SetParametersResult", successful=bool, reason=str)
 
 RELIABLE = Qos(
     Policy.Reliability.Reliable(duration(seconds=1)),

@@ -14,6 +14,11 @@ import time
 import pytest
 
 from board import SerialBoard
+from cyclonedds.domain import DomainParticipant
+from cyclonedds.idl.types import int64, sequence, uint8, uint64
+from cyclonedds.pub import DataWriter
+from cyclonedds.sub import DataReader
+from cyclonedds.topic import Topic
 from dds import (
     DOMAIN,
     ERROR,
@@ -21,16 +26,23 @@ from dds import (
     NODE,
     OK,
     PATIENCE_S,
+    RELIABLE,
     DiagnosticArray,
+    Log,
+    Parameter,
+    ParameterValue,
     PointCloud2,
     Range,
+    SetParametersResult,
     TFMessage,
     environment,
+    message,
     reader,
     taken,
     until,
 )
 
+SPANS = "FloatingPointRange", "IntegerRange"
 UNKNOWN, OBSTACLE, CLEAR, TOO_CLOSE, UNANSWERED = range(5)
 # Places of four sensors: x, y, heading in degrees.
 PLACES = [(0.2, 0.1, 30.0), (0.2, -0.1, -30.0), (-0.2, -0.1, -150.0), (-0.2, 0.1, 150.0)]
@@ -148,6 +160,56 @@ def test_transforms_reach_those_who_come_late(listener, launched):
         assert (place.x, place.y, place.z) == pytest.approx((x, y, 0.15))
         assert (turn.x, turn.y) == (0.0, 0.0)
         assert 2 * math.degrees(math.atan2(turn.z, turn.w)) == pytest.approx(heading)
+
+
+def service(node, participant, name, request, answer):
+    """Calls a service of parameters, on the topics that Fast DDS's mapping of ROS 2 has for it."""
+    kind = "rcl_interfaces/srv/" + "".join(word.title() for word in name.split("_"))
+    asks, answers = message(f"{kind}_Request", **request), message(f"{kind}_Response", **answer)
+    topic = lambda prefix, suffix, kind: Topic(participant, f"{prefix}/robot_1/sonars/{name}{suffix}", kind, qos=RELIABLE)
+    ask = DataWriter(participant, topic("rq", "Request", asks), qos=RELIABLE)
+    heard = DataReader(participant, topic("rr", "Reply", answers), qos=RELIABLE)
+    both = lambda: ask.get_matched_subscriptions() and heard.get_matched_publications()
+    until(f"discovery of {name}", node.process, both)
+
+    def call(*fields):
+        answer = []
+        # Again and again, for the node may know the one who asks sooner than the one who hears.
+        asked = lambda: ask.write(asks(*fields)) or time.sleep(0.2) or answer.extend(taken(heard, answers)) or answer
+        until(name, node.process, asked)
+        return answer[0]
+
+    return call
+
+
+def test_parameters_are_read_and_rosout_says_what_the_node_says(tmp_path):
+    participant = DomainParticipant(DOMAIN)
+    rosout = reader(participant, "/rosout", Log)
+    node = Launched(participant, tmp_path, *ARGUMENTS)
+    names, results = {"names": sequence[str]}, {"results": sequence[SetParametersResult]}
+    listed = message("rcl_interfaces/ListParametersResult", **names, prefixes=sequence[str])
+    lists = service(node, participant, "list_parameters", {"prefixes": sequence[str], "depth": uint64}, {"result": listed})
+    assert {"sensors", "port", "use_sim_time"} <= set(lists([], 0).result.names)
+    get = service(node, participant, "get_parameters", names, {"values": sequence[ParameterValue]})
+    sensors, view, source, yaws, none = get(["sensors", "field_of_view_rad", "source", "yaws_deg", "senors"]).values
+    assert (sensors.type, sensors.integer_value, view.type, view.double_value) == (2, 4, 3, 0.52)
+    assert (source.type, source.string_value, yaws.type, yaws.doubles[3], none.type) == (4, "serial", 8, 150.0, 0)
+    types = service(node, participant, "get_parameter_types", names, {"types": sequence[uint8]})
+    assert list(types(["sensors", "topics", "trigger_lines"]).types) == [2, 9, 7]
+    span = {kind: sequence[message(f"rcl_interfaces/{kind}", a=int64, b=int64, step=int64)] for kind in SPANS}
+    about = message("rcl_interfaces/ParameterDescriptor", name=str, type=uint8, about=str, more=str, fixed=bool, dyn=bool, **span)
+    describe = service(node, participant, "describe_parameters", names, {"values": sequence[about]})
+    assert [(it.name, it.type) for it in describe(["port", "baud"]).values] == [("port", 4), ("baud", 2)]
+    put = service(node, participant, "set_parameters", {"parameters": sequence[Parameter]}, results)
+    more = ParameterValue(2, False, 5, 0.0, "", [], [], [], [], [])
+    (refused,) = put([Parameter("sensors", more)]).results
+    assert not refused.successful and refused.reason.startswith("sensors: read at the start; restart the node")
+    node.board.close()
+    said = []
+    until("a word of the line", node.process, lambda: said.extend(taken(rosout, Log)) or any("again" in it.msg for it in said))
+    assert {(it.name, it.level) for it in said} == {("sonars", 20)}
+    node.process.send_signal(signal.SIGINT)
+    assert said[-1].msg in node.process.communicate(timeout=PATIENCE_S)[1]
 
 
 def port_for_acknowledgements():

@@ -91,7 +91,7 @@ def test_simulated_robot_reads_drives_and_says_the_truth(tmp_path, listener):
     try:
         until("half a metre of driving", node, has_driven)
         # It stops by itself nowhere: the node is told to.
-        velocity.write(Twist(Vector3(), Vector3()))
+        velocity.write(Twist(Vector3(0.0, 0.0, 0.0), Vector3(0.0, 0.0, 0.0)))
         until("standing still", node, lambda: take() or heard[truth][-1].twist.twist.linear.x == 0.0)
         stood = stamp(heard[truth][-1])
         standing = lambda: [cloud for cloud in heard[clouds] if stamp(cloud) > stood]

@@ -4,6 +4,7 @@ use std::fmt::{self, Write as _};
 use std::path::PathBuf;
 
 use eeruf_core::MAX_SENSORS;
+use ros2_client::ParameterValue;
 use serde::de::{DeserializeSeed, IgnoredAny, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
@@ -52,6 +53,11 @@ macro_rules! parameters {
         const DESCRIBED: &[(&str, &[&str], &str)] = &[$((stringify!($name), &[$($doc),+], $shown),)+];
 
         impl Parameters {
+            /// Names and values, as the services of parameters give them.
+            pub(crate) fn values(&self) -> Vec<(&'static str, ParameterValue)> {
+                vec![$((stringify!($name), self.$name.value()),)+]
+            }
+
             /// Sets the parameter of this name to what the value says.
             fn set<'de, D: Deserializer<'de>>(&mut self, name: &str, value: D) -> Result<(), D::Error> {
                 const NAMES: &[&str] = &[$(stringify!($name)),+];
@@ -127,6 +133,37 @@ parameters! {
     yaws_deg: Vec<f32> = Vec::new(), "[]";
     /// Stamps are by the host's clock: true is an error.
     use_sim_time: bool = false, "false";
+}
+
+trait Value {
+    /// The value as the file says it: 0.52, not 0.5199999809.
+    fn value(&self) -> ParameterValue;
+}
+
+macro_rules! values {
+    ($($kind:ty: $it:ident => $of:ident($value:expr);)+) => {
+        $(impl Value for $kind {
+            fn value(&self) -> ParameterValue {
+                let $it = self;
+                ParameterValue::$of($value)
+            }
+        })+
+    };
+}
+
+values! {
+    bool: it => Boolean(*it);
+    u8: it => Integer((*it).into());
+    u32: it => Integer((*it).into());
+    f32: it => Double(it.to_string().parse().unwrap_or_default());
+    f64: it => Double(*it);
+    String: it => String(it.clone());
+    PathBuf: it => String(it.display().to_string());
+    Source: it => String(format!("{it:?}").to_lowercase());
+    UnansweredAs: it => String(format!("{it:?}").to_lowercase());
+    Vec<u32>: it => IntegerArray(it.iter().map(|&number| number.into()).collect());
+    Vec<f32>: it => DoubleArray(it.iter().map(|number| f64::from(*number)).collect());
+    Vec<String>: it => StringArray(it.clone());
 }
 
 /// One parameter, to be set.

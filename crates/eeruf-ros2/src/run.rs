@@ -48,7 +48,7 @@ pub(crate) fn run(mut setup: Setup) -> Result<(), String> {
         }
         _ => None,
     };
-    eprintln!("eeruf-ros2: {} sensors, from {}", parameters.sensors, source(parameters));
+    node.say_once(&format!("{} sensors, from {}", parameters.sensors, source(parameters)));
     let mut reported = Instant::now();
     while !stop.load(Ordering::Relaxed) {
         node.look(line.as_ref())?;
@@ -58,7 +58,9 @@ pub(crate) fn run(mut setup: Setup) -> Result<(), String> {
             node.report()?;
         }
     }
-    node.end()
+    node.flush()?;
+    eprintln!("eeruf-ros2: ended");
+    Ok(())
 }
 
 #[cfg(target_os = "linux")]
@@ -108,14 +110,12 @@ struct EerufNode {
 impl EerufNode {
     fn open(setup: &Setup) -> Result<Self, String> {
         let parameters = &setup.parameters;
-        let is_set = |text: &str| !text.is_empty();
-        let log = parameters.log.as_os_str();
         Ok(Self {
             ros: setup.ros.as_ref().map(|args| Ros::open(setup, args)).transpose()?,
             simulator: setup.world.clone().map(|world| Simulator::new(world, &parameters.method)).transpose()?,
             truth: vec![(View::Unknown, 0.0); usize::from(parameters.sensors)],
-            mavlink: is_set(&parameters.mavlink).then(|| Mavlink::open(parameters)).transpose()?,
-            log: (!log.is_empty()).then(|| FiringLog::create(&parameters.log)).transpose()?,
+            mavlink: (!parameters.mavlink.is_empty()).then(|| Mavlink::open(parameters)).transpose()?,
+            log: (!parameters.log.as_os_str().is_empty()).then(|| FiringLog::create(&parameters.log)).transpose()?,
             speeds: None,
             diagnosis: Diagnosis::new(parameters, 0.0),
             scale: Scale::new(parameters),
@@ -168,10 +168,7 @@ impl EerufNode {
     }
 
     fn frame(&mut self, received: Received, at_ns: i64) -> Result<(), String> {
-        let Received { sequence, message, of_hopping } = received;
-        if of_hopping {
-            self.say_once("the board's ring hops in time, of an earlier version; how it weighs readings is ignored");
-        }
+        let Received { sequence, message } = received;
         if let Some(last) = self.sequence.replace(sequence) {
             // A board that restarted begins with 0.
             let missing = sequence.wrapping_sub(last).wrapping_sub(1);
@@ -241,7 +238,14 @@ impl EerufNode {
         }
         let FiringMessage { sensor, kind, t_echo, late, explained_by, .. } = *firing;
         self.diagnosis.reading(self.now_s(), sensor, kind, t_echo, late, explained_by);
-        self.publish(sensor, kind, t_echo, fired_ns);
+        self.has_news = true;
+        let Some(distance) = self.scale.distance(kind, t_echo) else { return Ok(()) };
+        let range = distance.number();
+        let published = self.ros.as_ref().is_none_or(|ros| ros.publish_range(sensor, fired_ns, range));
+        let sent = self.mavlink.as_mut().is_none_or(|mavlink| mavlink.distance(sensor, distance).is_ok());
+        if !(published && sent) {
+            self.diagnosis.unsent();
+        }
         Ok(())
     }
 
@@ -261,17 +265,6 @@ impl EerufNode {
         let shown = self.ros.as_ref().zip(course);
         let shown = shown.is_none_or(|(ros, course)| ros.publish_truth(nanoseconds(), course, &self.truth));
         if !(published && sent && shown) {
-            self.diagnosis.unsent();
-        }
-    }
-
-    fn publish(&mut self, sensor: u8, kind: ReadingKind, t_echo: Option<Micros>, fired_ns: i64) {
-        self.has_news = true;
-        let Some(distance) = self.scale.distance(kind, t_echo) else { return };
-        let range = distance.number();
-        let published = self.ros.as_ref().is_none_or(|ros| ros.publish_range(sensor, fired_ns, range));
-        let sent = self.mavlink.as_mut().is_none_or(|mavlink| mavlink.distance(sensor, distance).is_ok());
-        if !(published && sent) {
             self.diagnosis.unsent();
         }
     }
@@ -297,17 +290,12 @@ impl EerufNode {
     fn say_once(&mut self, what: &str) {
         if self.said != what {
             eprintln!("eeruf-ros2: {what}");
+            self.ros.as_ref().inspect(|ros| ros.log(what));
             what.clone_into(&mut self.said);
         }
     }
 
     fn flush(&mut self) -> Result<(), String> {
         self.log.as_mut().map_or(Ok(()), FiringLog::flush).map_err(|error| format!("log: {error}"))
-    }
-
-    fn end(mut self) -> Result<(), String> {
-        self.flush()?;
-        eprintln!("eeruf-ros2: ended");
-        Ok(())
     }
 }

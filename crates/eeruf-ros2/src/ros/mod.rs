@@ -9,11 +9,13 @@ use std::env;
 use std::fmt::Display;
 use std::time::Duration;
 
+use futures_executor::block_on;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use ros2_client::dds::rustdds::Topic;
 use ros2_client::qos::{Durability, History, WhenFull};
+use ros2_client::ros2::LogLevel;
 use ros2_client::{Context, MessageTypeName, Name, Node, NodeName, NodeOptions, Publisher, QosProfile, Subscription};
 
 use crate::board_line::nanoseconds;
@@ -44,8 +46,8 @@ struct Placed {
 }
 
 pub(crate) struct Ros {
-    /// Leaves the domain when dropped.
-    _node: Node,
+    /// Leaves when it is dropped.
+    node: Node,
     ranges: Vec<Publisher<Range>>,
     frame_ids: Vec<String>,
     diagnostics: Publisher<DiagnosticArray>,
@@ -55,9 +57,7 @@ pub(crate) struct Ros {
     scene: Option<Scene>,
     /// The robot's motion, for a ring on pins.
     odometry: Option<Subscription<Odometry>>,
-    field_of_view: f32,
-    min_range: f32,
-    max_range: f32,
+    parameters: Parameters,
     name: String,
     hardware: String,
 }
@@ -79,8 +79,13 @@ impl Ros {
         let participant = participant::join(domain()?)?;
         let context = Context::from_domain_participant(participant).map_err(wrong("DDS"))?;
         let node_name = NodeName::new(args.namespace(), args.node()).map_err(wrong(&args.full_name()))?;
-        let options = NodeOptions::new().enable_rosout(false).start_parameter_services(false);
-        let mut node = Topics { node: context.new_node(node_name, options).map_err(wrong("node"))?, args };
+        let mut node = context.new_node(node_name, options(parameters)).map_err(wrong("node"))?;
+        // It answers those who ask for parameters, until the node is dropped.
+        let spinner = node.spinner().map_err(wrong("parameters"))?;
+        std::thread::spawn(|| {
+            block_on(spinner.spin()).inspect_err(|error| eprintln!("eeruf-ros2: parameters: {error}"))
+        });
+        let mut node = Topics { node, args };
         let mut ranges = Vec::new();
         for sensor in 0..parameters.sensors {
             let name = Parameters::name_of(&parameters.topics, "~/sonar_", sensor);
@@ -92,28 +97,30 @@ impl Ros {
         let odometry = odometry.transpose()?;
         let frame_id = |sensor| Parameters::name_of(&parameters.frame_ids, "sonar_", sensor);
         let frame_ids: Vec<String> = (0..parameters.sensors).map(frame_id).collect();
-        let placing = &setup.placing;
-        let placed = (!placing.places.is_empty()).then(|| node.placed(placing, &parameters.base_frame, &frame_ids));
+        let is_placed = !setup.placing.places.is_empty();
+        let placed = is_placed.then(|| node.placed(&setup.placing, &parameters.base_frame, &frame_ids));
         let placed = placed.transpose()?;
-        let frames = [&parameters.map_frame, &parameters.base_frame];
-        let scene = setup.world.as_ref().map(|_| Scene::open(&mut node, frames[0], frames[1])).transpose()?;
+        let scene = setup.world.as_ref().map(|_| Scene::open(&mut node, parameters)).transpose()?;
         Ok(Self {
-            _node: node.node,
+            node: node.node,
             ranges,
             frame_ids,
             diagnostics,
             placed,
             scene,
             odometry,
-            field_of_view: parameters.field_of_view_rad,
-            min_range: parameters.min_range_m,
-            max_range: parameters.max_range_m,
+            parameters: parameters.clone(),
             name: args.node().to_owned(),
             hardware: if parameters.source == Source::Serial { parameters.port.clone() } else { String::new() },
         })
     }
 
-    /// Publishes a sensor's range, of a firing at this time; false if sending failed.
+    /// Publishes what the node says on `/rosout`.
+    pub(crate) fn log(&self, what: &str) {
+        ros2_client::rosout!(self.node, LogLevel::Info, "{what}");
+    }
+
+    /// Publishes a sensor's range, of a firing at this time; false if that cannot be sent.
     pub(crate) fn publish_range(&self, sensor: u8, fired_ns: i64, range: f32) -> bool {
         let at = usize::from(sensor);
         let (Some(publisher), Some(frame_id)) = (self.ranges.get(at), self.frame_ids.get(at)) else { return false };
@@ -121,9 +128,9 @@ impl Ros {
         let message = Range {
             header,
             radiation_type: ULTRASOUND,
-            field_of_view: self.field_of_view,
-            min_range: self.min_range,
-            max_range: self.max_range,
+            field_of_view: self.parameters.field_of_view_rad,
+            min_range: self.parameters.min_range_m,
+            max_range: self.parameters.max_range_m,
             range,
             variance: 0.0,
         };
@@ -134,9 +141,9 @@ impl Ros {
     pub(crate) fn publish_ring(&self, now_ns: i64, views: &[(View, f32)], scale: &Scale) -> bool {
         let Some(placed) = &self.placed else { return true };
         let header = Header { stamp: Time::from_nanoseconds(now_ns), frame_id: placed.base_frame.clone() };
-        let scan = cloud::scan(header.clone(), &placed.places, views, self.field_of_view, scale);
-        let sent = placed.cloud.publish(cloud::cloud(header, &placed.places, views, self.min_range)).is_ok();
-        placed.scan.publish(scan).is_ok() && sent
+        let scan = cloud::scan(header.clone(), &placed.places, views, self.parameters.field_of_view_rad, scale);
+        let cloud = cloud::cloud(header, &placed.places, views, self.parameters.min_range_m);
+        placed.scan.publish(scan).is_ok() & placed.cloud.publish(cloud).is_ok()
     }
 
     /// Returns the latest commanded velocity of a simulated robot: ahead, and turning.
@@ -147,7 +154,7 @@ impl Ros {
     /// Publishes where a simulated robot is and what its sensors would see alone; false if sending failed.
     pub(crate) fn publish_truth(&self, now_ns: i64, course: Course, views: &[(View, f32)]) -> bool {
         let (Some(scene), Some(placed)) = (&self.scene, &self.placed) else { return true };
-        scene.publish(Time::from_nanoseconds(now_ns), course, &placed.places, views, self.min_range)
+        scene.publish(Time::from_nanoseconds(now_ns), course, &placed.places, views, self.parameters.min_range_m)
     }
 
     /// Publishes the diagnostics; false if sending failed.
@@ -176,7 +183,18 @@ impl Ros {
     }
 }
 
-/// The node, and the names of its topics.
+/// Parameters to be read, and not to be set: they were read at the start.
+fn options(parameters: &Parameters) -> NodeOptions {
+    let values = parameters.values();
+    let none = NodeOptions::new();
+    let options = values.iter().fold(none, |options, (name, value)| options.declare_parameter(name, value.clone()));
+    options.parameter_validator(Box::new(move |name, value| {
+        let is_read = values.contains(&(name, value.clone()));
+        is_read.then_some(()).ok_or_else(|| format!("{name}: read at the start; restart the node with -p {name}:=.."))
+    }))
+}
+
+/// The node, and what its topics are called.
 struct Topics<'a> {
     node: Node,
     args: &'a RosArgs,

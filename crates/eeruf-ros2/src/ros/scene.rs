@@ -22,14 +22,14 @@ pub(super) struct Scene {
 }
 
 impl Scene {
-    pub(super) fn open(node: &mut Topics<'_>, map_frame: &str, base_frame: &str) -> Result<Self, String> {
+    pub(super) fn open(node: &mut Topics<'_>, parameters: &crate::parameters::Parameters) -> Result<Self, String> {
         Ok(Self {
             transforms: node.publisher("/tf", ["tf2_msgs", "TFMessage"], &PUBLISHING)?,
             truth: node.publisher("~/truth", ["nav_msgs", "Odometry"], &PUBLISHING)?,
             cloud: node.publisher("~/true_points", ["sensor_msgs", "PointCloud2"], &PUBLISHING)?,
             velocity: node.subscription("cmd_vel", ["geometry_msgs", "Twist"])?,
-            map_frame: map_frame.to_owned(),
-            base_frame: base_frame.to_owned(),
+            map_frame: parameters.map_frame.clone(),
+            base_frame: parameters.base_frame.clone(),
         })
     }
 

@@ -1794,6 +1794,27 @@ uint8_t eeruf_hc_sr04_health(const EerufHcSr04 *modules, uint8_t sensor) {
     return health_of(&modules->lines[sensor]);
 }
 
+void eeruf_pace_event(EerufPace *pace, const EerufEvent *event) {
+    const uint32_t bit = (uint32_t)1 << (event->sensor & 31), heard = pace->heard & ~bit;
+    if (event->kind != EERUF_EVENT_READING) return;
+    /* What a late reading comes before is compared with nothing. */
+    if (event->u.reading.kind != EERUF_READING_LATE) pace->twice |= pace->heard & bit;
+    pace->heard = event->u.reading.kind != EERUF_READING_LATE ? heard | bit : heard;
+}
+
+bool eeruf_pace_too_slow(EerufPace *pace, const EerufRing *ring, uint32_t now_us) {
+    uint8_t x;
+    bool slow = pace->late |= !FLOWS(ring) && ring->latest_us > 1000;
+    /* Twice in two seconds, whatever the loop does in between. */
+    if (now_us - pace->since_us < 950000) return false;
+    for (x = 0; x < ring->count; x++) slow |= eeruf_ring_is_enabled(ring, x) && !(pace->twice >> (x & 31) & 1);
+    pace->since_us = now_us;
+    pace->heard = pace->twice = 0;
+    pace->late = false;
+    return slow && !ring->paused;
+}
+
+#if EERUF_WITH_FLOW
 /* ---- Flow: the rules are in docs/explanation/flow.md ---- */
 
 #define QUIET_US 4u /* the unit of quiet */

@@ -395,6 +395,19 @@ EerufStatus eeruf_watch_init(EerufWatch *watch, size_t watch_size, EerufWatched 
 EerufStatus eeruf_watch_event(EerufWatch *watch, const EerufEvent *event, uint32_t now_us);
 EerufStatus eeruf_watch_state(const EerufWatch *watch, uint8_t sensor, uint32_t now_us, EerufState *state);
 
+/* ---- Pace: whether the loop comes often enough ---- */
+
+/* Begin with {0}. Not for the caller. */
+typedef struct EerufPace {
+    uint32_t heard, twice, since_us; /* sensors with a reading that is not late since then, and with two in a row */
+    bool late;
+} EerufPace;
+/* Takes in an event of a poll. */
+void eeruf_pace_event(EerufPace *pace, const EerufEvent *event);
+/* True if the loop is too slow, about once a second: a sensor had no two such readings in it, or a table's firings came more
+   than a millisecond late, which makes readings ambiguous. */
+bool eeruf_pace_too_slow(EerufPace *pace, const EerufRing *ring, uint32_t now_us);
+
 /* ---- Distances ---- */
 
 #define EERUF_SOUND_20C 343200u /* mm/s at 20 C (ISO 9613-1) */

@@ -427,33 +427,12 @@ bool EerufModules::take(const EerufEvent &event, uint32_t now, bool looks) {
     } else if (event.kind == EERUF_EVENT_READING) {
         sensor_ = event.sensor;
         reading_ = event.u.reading;
-        // Two in a row: what a late reading comes before is compared with nothing.
-        const uint32_t bit = 1ul << (sensor_ & 31);
-        if (kind() == EERUF_READING_LATE) {
-            heard_ &= ~bit;
-        } else {
-            twice_ |= heard_ & bit;
-            heard_ |= bit;
-        }
+        eeruf_pace_event(&pace_, &event);
     }
     if (onReading_ != nullptr) onReading_(*this, event, now);
     // A sensor that is to fire has fired by now.
     if (onEvent_ != nullptr) onEvent_(*this, event, now);
     return event.kind == EERUF_EVENT_READING;
-}
-
-bool EerufModules::tooSlow(bool late) {
-    const uint32_t now = ::micros();
-    late_ |= late;
-    // Twice in two seconds, whatever loop() does in between.
-    if (now - since_ < 950000) return false;
-    late = late_;
-    for (uint8_t i = 0; i < count_; i++)
-        late |= eeruf_ring_is_enabled(modules_.ring, i) && !(twice_ >> (i & 31) & 1);
-    since_ = now;
-    heard_ = twice_ = 0;
-    late_ = false;
-    return late && !modules_.ring->paused;
 }
 
 uint32_t EerufModules::quietFor() const {

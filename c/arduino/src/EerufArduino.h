@@ -67,6 +67,9 @@ public:
     // Calls this with each event and the clock that it was polled at, also with those that read() does not return for.
     void tell(void (*listener)(EerufModules &modules, const EerufEvent &event, uint32_t now)) { onEvent_ = listener; }
 
+    // True if loop() is too slow, about once a second: a module had no two readings in it, or a table's firings came more than a
+    // millisecond late, which makes readings ambiguous and cost more time.
+    bool tooSlow() { return eeruf_pace_too_slow(&pace_, modules_.ring, ::micros()); }
     // Whether interrupts time the edges. If not, read() looks at the lines: it was asked for, or a pin has none.
     bool byInterrupts() const { return !looks_; }
 
@@ -90,8 +93,6 @@ protected:
     // Waits until a trigger may be given that was polled for at `now`: as long after it as others are, however long it took
     // to decide who is next. By what a trigger comes sooner or later, a path of foreign sound seems to change.
     void holdBack(uint32_t now, bool looks);
-    // True once a second if modules fire late, or one had only readings without a time in it.
-    bool tooSlow(bool late);
     // Does what an event asks for; true for a reading.
     bool take(const EerufEvent &event, uint32_t now, bool looks);
 
@@ -113,12 +114,11 @@ private:
     EerufEdges queue_;
     EerufHcSr04 modules_;
     EerufReading reading_;
-    // The modules with a reading since then, and with two, which agreement needs.
-    uint32_t heard_ = 0, twice_ = 0, since_ = 0;
+    EerufPace pace_ = {0, 0, 0, false};
     uint32_t seen_ = 0; // by read(), for the last time
     uint16_t recovery_, away_ = 0; // how long loop() does other things
     uint8_t count_, sensor_;
-    bool looks_ = false, late_ = false; // read() looks at the lines; modules fired late
+    bool looks_ = false; // read() looks at the lines
 };
 
 // The state before each of N modules: sonar.watch(states) after sonar.begin(). 10 bytes a module.
@@ -162,9 +162,7 @@ public:
         return take(event, now, EERUF_LOOKS);
     }
 
-    // True if loop() is too slow, about once a second: firings came more than a millisecond late, which makes readings
-    // ambiguous and cost more time, or a module had no reading. late() has the microseconds, of this period.
-    bool tooSlow() { return EerufModules::tooSlow(ring_.latest_us > 1000); }
+    // The microseconds by which firings of this period came late at most.
     uint16_t late() const { return ring_.latest_us; }
     // Stops a module, or lets it fire again.
     bool enable(uint8_t sensor, bool enabled = true) { return eeruf_ring_enable(&ring_, sensor, enabled) == EERUF_OK; }

@@ -48,8 +48,6 @@ public:
         return take(event, now, EERUF_LOOKS);
     }
 
-    // True if loop() is too slow, about once a second: a module had no two readings in it.
-    bool tooSlow() { return EerufModules::tooSlow(false); }
     // Stops a module, or lets it fire again.
     bool enable(uint8_t sensor, bool enabled = true) {
         return eeruf_flow_enable(&ring_, sensor, enabled) == EERUF_OK;

@@ -11,7 +11,8 @@
 //! - a line that never rises after its trigger: the reading is
 //!   [`ReadingKind::Unanswered`](eeruf_core::ReadingKind::Unanswered), never free space;
 //! - a sensor out of range, or edges that get lost on the way: [`HcSr04Ring::health`] says so;
-//! - a schedule that would trigger a sensor again too soon: it is refused when the ring is set up.
+//! - a schedule that would trigger a sensor again too soon: it is refused when the ring is set up;
+//! - a loop that polls too seldom: [`Pace`] says so.
 //!
 //! The ring can also be a [`FlowRing`](eeruf_core::flow::FlowRing), which fires by flow.
 //!
@@ -60,6 +61,7 @@ mod health;
 mod line;
 mod lines;
 pub mod measuring;
+mod pace;
 mod ring;
 mod sampler;
 mod settings;
@@ -70,6 +72,7 @@ pub use eeruf_modules as modules;
 pub use error::SetupError;
 pub use health::Health;
 pub use lines::{FlexPin, Pins};
+pub use pace::Pace;
 pub use ring::{Edges, HcSr04Ring};
 pub use sampler::Sampler;
 pub use settings::Settings;

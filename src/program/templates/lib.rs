@@ -8,6 +8,8 @@ use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{InputPin, OutputPin};
 
 pub use eeruf_core;
+/// Takes in each event, and says once a second whether the loop is too slow: `pace.too_slow(sonar.ring(), now)`.
+pub use eeruf_hc_sr04::Pace;
 pub use ring::SENSORS;  //@flow
 
 pub const SENSORS: usize = @sensors@;  //@table

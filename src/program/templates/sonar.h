@@ -27,6 +27,8 @@ void sonar_moving(uint32_t speed_mm_s, uint32_t turn_mrad_s);  //@flow
 /* As often as you can: fires what is due. True with a reading: EERUF_READING_ACCEPTED is a distance
    (eeruf_distance_mm), EERUF_READING_CLEAR free space, all else no news. */
 bool sonar_read(uint8_t *sensor, EerufReading *reading);
+/* True, about once a second, if you do not: a module had no two readings in it. */
+bool sonar_too_slow(void);
 /* Each byte that comes from the autopilot. */  //@mavlink
 void sonar_heard(uint8_t byte);  //@mavlink
 /* Bytes for the autopilot, at most as many as the line has room for, and where they are until the next call. */  //@mavlink

@@ -1,6 +1,6 @@
 //! `cargo xtask examples`: the programs in `examples/` that one flashes onto a board. Each is built and linked as its
-//! README says, those that fire by a table with the one that `eeruf design` writes. That of the Uno is run among
-//! simulated modules by `cargo xtask arduino`; nothing else is run.
+//! README says, that of the Uno with the table that `eeruf design` writes. That one is run among simulated modules by
+//! `cargo xtask arduino`; nothing else is run.
 
 use std::path::{Path, PathBuf, absolute};
 use std::process::Command;
@@ -21,33 +21,25 @@ pub(crate) const BOARDS: [(&str, &str); 4] = [
 
 const UNO: (&str, &str) = ("uno", "avr-none");
 
-/// Examples that fire by a table; the others fire by flow.
-const BY_TABLE: [&str; 2] = ["uno", "pico"];
-
 /// All of them, or the one that is named.
 pub(crate) fn examples(only: Option<&str>, steps: &mut Steps) {
     let is_asked_for = |board: &str| only.is_none_or(|only| only == board);
     for (board, target) in BOARDS.into_iter().filter(|(board, _)| is_asked_for(board)) {
-        if BY_TABLE.contains(&board) {
-            steps.step(&format!("table of the example {board}"), || table(board));
-        }
         steps.step(&format!("example {board}"), || build(board, target).map(drop));
     }
 }
 
-/// The table of each: building them takes minutes, and a better table must not be forgotten in them until then.
+/// The tables of the Uno and of the sample for Zephyr: building them takes minutes, and a better table must not be
+/// forgotten in them until then.
 pub(crate) fn tables() -> Result<()> {
-    BY_TABLE.into_iter().try_for_each(table)
-}
-
-/// A table is what `eeruf design` says of its ring file.
-fn table(board: &str) -> Result<()> {
-    let folder = Path::new("examples").join(board);
-    let (ring, table) = (folder.join("ring.toml"), folder.join("src/ring.rs"));
-    let mut design = Command::new(crate::toolchain::program()?);
-    let design = output(design.arg("design").arg(&ring).args(["--period-only", "--emit", "rust"]))?;
-    let (table, ring) = (table.display(), ring.display());
-    ensure!(fs::read_to_string(table.to_string())?.trim() == design, "{table}: not what eeruf design says of {ring}");
+    for (language, folder, table) in
+        [("rust", "examples/uno", "src/ring.rs"), ("c", "c/zephyr/samples/ring", "src/ring.h")]
+    {
+        let [ring, table] = ["ring.toml", table].map(|file| Path::new(folder).join(file));
+        let mut design = Command::new(crate::toolchain::program()?);
+        let design = output(design.arg("design").arg(&ring).args(["--period-only", "--emit", language]))?;
+        ensure!(fs::read_to_string(&table)?.trim() == design, "{}: not what eeruf design says", table.display());
+    }
     Ok(())
 }
 

@@ -284,24 +284,21 @@ fn arduino(wanted: &Wanted<'_>, flow: Option<&FlowDesign>, about: &[String], boa
     Program { files, next: "open the sketch in the Arduino IDE and upload it; its first lines say how to wire" }
 }
 
-/// Numbers by their names in templates.
-type Numbers = Vec<(&'static str, u32)>;
-
-/// The numbers of the modules, which rest for this time.
-fn of_modules(spec: &RingSpec, times: PulseTimes, rest: Micros) -> Numbers {
+/// The numbers of the modules, which rest for this time, by their names in templates.
+fn of_modules(spec: &RingSpec, times: PulseTimes, rest: Micros) -> Vec<(&'static str, String)> {
     let PulseTimes { deaf_us, shortest_us, latest_rise_us, longest_us, longest_hold_us } = times;
     let trigger_us = spec.modules.first().map_or(10, |module| module.trigger_us);
     let edges = [("deaf_us", deaf_us), ("shortest_us", shortest_us), ("latest_rise_us", latest_rise_us)];
     let pulses = [("longest_us", longest_us), ("longest_hold_us", longest_hold_us), ("trigger_us", trigger_us)];
     let ring = [("sensors", spec.sensors as u32), ("rest_us", rest.as_micros())];
-    ring.into_iter().chain(edges).chain(pulses).collect()
+    ring.into_iter().chain(edges).chain(pulses).map(|(name, number)| (name, number.to_string())).collect()
 }
 
 /// The numbers of a flow ring.
-fn of_flow(flow: &FlowDesign) -> Numbers {
+fn of_flow(flow: &FlowDesign) -> Vec<(&'static str, String)> {
     let FlowDesign { turns, belief, window, blanking, .. } = flow;
     let us = Micros::as_micros;
-    vec![
+    let numbers = [
         ("window_us", us(*window)),
         ("blanking_us", us(*blanking)),
         ("least_us", us(turns.least)),
@@ -311,7 +308,8 @@ fn of_flow(flow: &FlowDesign) -> Numbers {
         ("near_us", us(belief.near)),
         ("path_change_us", us(belief.path_change)),
         ("top_speed_mm_s", belief.top_speed_mm_s.into()),
-    ]
+    ];
+    numbers.map(|(name, number)| (name, number.to_string())).into()
 }
 
 fn micropython(
@@ -328,8 +326,8 @@ fn micropython(
                 .to_owned(),
         );
     }
-    let numbers = of_modules(spec, times, flow.turns.rest).into_iter().chain(of_flow(flow));
-    let mut values: Vec<_> = numbers.map(|(name, number)| (name, number.to_string())).collect();
+    let mut values = of_modules(spec, times, flow.turns.rest);
+    values.extend(of_flow(flow));
     let votes = match flow.belief.votes {
         Votes::ByMotion => "BY_MOTION",
         Votes::EveryEcho => "EVERY_ECHO",
@@ -354,7 +352,6 @@ fn micropython(
 fn c(wanted: &Wanted<'_>, flow: Option<&FlowDesign>, about: &[String]) -> Program {
     let about = format!("/* {} */\n", about.join("\n   "));
     let of_ring = |template| lines_of(template, flow.is_some(), wanted.mavlink);
-    let ring = wanted.source(Form::C, flow);
     let directions = directions(wanted);
     let mut values: Vec<_> = directions.iter().map(|(name, value)| (*name, &**value)).collect();
     values.extend(match flow {
@@ -366,7 +363,7 @@ fn c(wanted: &Wanted<'_>, flow: Option<&FlowDesign>, about: &[String]) -> Progra
     let files = [
         ("sonar.h", about + &of_ring(include_str!("templates/sonar.h"))),
         ("sonar.c", filled(&of_ring(include_str!("templates/sonar.c")), &values)),
-        ("ring.h", ring),
+        ("ring.h", wanted.source(Form::C, flow)),
     ];
     let library = C_LIBRARY.into_iter().chain([MAVLINK, ARDUPILOT].into_iter().filter(|_| wanted.mavlink));
     let files = files.into_iter().chain(library.map(|(name, text)| (name, text.to_owned())));
@@ -383,7 +380,6 @@ fn rust(wanted: &Wanted<'_>, flow: Option<&FlowDesign>, times: PulseTimes, about
     // A module may rest for less than it says, where the table of its ring file keeps that.
     let rest = spec.modules.first().map_or(0, |module| module.rest_us).min(design.schedule.min_refire().as_micros());
     let rest = flow.map_or(Micros::new(rest), |flow| flow.turns.rest);
-    let numbers = of_modules(spec, times, rest).into_iter().map(|(name, number)| (name, number.to_string()));
     let (ring, begin) = match (flow, own) {
         (Some(_), true) => (
             "eeruf_core::flow::FlowRing<SENSORS, 1, eeruf_core::EachSensor<SENSORS>>",
@@ -395,13 +391,13 @@ fn rust(wanted: &Wanted<'_>, flow: Option<&FlowDesign>, times: PulseTimes, about
         }
         (None, false) => ("eeruf_core::ScheduledRing<'static, SENSORS>", ""),
     };
-    let texts = [("ring", ring), ("begin", begin)].map(|(name, text)| (name, text.to_owned()));
-    let values: Vec<_> = numbers.chain(texts).collect();
+    let mut values = of_modules(spec, times, rest);
+    values.extend([("ring", ring.to_owned()), ("begin", begin.to_owned())]);
     let values: Vec<_> = values.iter().map(|(name, value)| (*name, &**value)).collect();
-    let lib = filled(&lines_of(include_str!("templates/lib.rs"), flow.is_some(), false), &values);
+    let lib = lines_of(include_str!("templates/lib.rs"), flow.is_some(), false);
     let files = [
         ("Cargo.toml", filled(include_str!("templates/Cargo.toml.in"), &[("name", wanted.name)])),
-        ("src/lib.rs", comments(about, "//!") + &lib),
+        ("src/lib.rs", comments(about, "//!") + &filled(&lib, &values)),
         ("src/ring.rs", "//! The settings of the ring, as `eeruf design` found them.\n\n".to_owned() + &source),
     ];
     Program {

@@ -1,6 +1,8 @@
-"""The program of `eeruf design --program micropython` on modules that are each before a wall of their own: how many readings
-after the first of each, how many are printed, how many of them wrong. The folder of the program is the argument."""
+"""The program of `eeruf design --program micropython` on modules that are each before a wall of their own, beside the
+work of LOAD: a line for each with its readings after the first, those printed, and those of them that are wrong. The folder
+of the program is the argument."""
 
+import os
 import sys
 import types
 from pathlib import Path
@@ -18,7 +20,7 @@ class Board:
     """The clock and the lines."""
 
     now = (1 << 30) - 3_000_000
-    began = now
+    began = next = now
     modules: dict = {}
 
     def tick(self):
@@ -96,7 +98,13 @@ import eeruf  # noqa: E402
 said, readings, read = [], [], eeruf.HcSr04FlowRing.read
 
 
+WORK, EVERY = map(int, os.environ.get("LOAD", "0 0").split()[:2])
+
+
 def told(ring):
+    if WORK and BOARD.now >= BOARD.next:
+        BOARD.now += WORK
+        BOARD.next = BOARD.now + EVERY
     reading = read(ring)
     if reading:
         readings.append(reading)
@@ -110,6 +118,8 @@ except Over:
     pass
 if said[0][0] != "seed" or len(said[0]) != 2:
     raise SystemExit(f"{said[0]}: expected the seed first")
-distances = [(words[0] - 1, words[1]) for words in said[1:]]
-wrong = sum(mm == "free" or abs(mm - wall_us(module) * 1716 // 10000) > 50 for module, mm in distances)
-print(len(readings) - len(TRIGGERS), len(distances), wrong)
+for module in range(len(TRIGGERS)):
+    mine = [words[1] for words in said if words[0] == module + 1]
+    wrong = sum(mm == "free" or abs(mm - wall_us(module) * 1716 // 10000) > 50 for mm in mine)
+    print(sum(reading[eeruf.SENSOR] == module for reading in readings) - 1, len(mine), wrong)
+print(*{words[0] for words in said if len(words) == 1})

@@ -5,7 +5,6 @@ mod build;
 mod line_faults;
 mod loads;
 mod newping;
-mod own_walls;
 mod pace;
 mod programs;
 mod real_log;
@@ -20,7 +19,7 @@ use anyhow::{Context as _, Result};
 use fs_err as fs;
 
 pub(crate) use self::newping::newping;
-pub(crate) use self::programs::programs;
+pub(crate) use self::programs::{Drawn, programs};
 use crate::steps::{Steps, command, empty, run};
 
 /// Folder in which it is packed, built and run.
@@ -100,8 +99,7 @@ pub(crate) fn arduino(plan: &Plan, steps: &mut Steps) {
     steps.step("Arduino library", || pack().and_then(|library| examples(&library, plan.short)));
     steps.step("Arduino library for its other cores", || cores(&library));
     steps.step("pace of sketches", || pace::run(&library));
-    steps.step("ready tables before walls", || own_walls::run(&library, plan.short));
-    steps.step("programs of `eeruf design`, a corner", || programs(true));
+    steps.step("programs of `eeruf design`, a corner", || programs(&Drawn::default(), true));
     steps.step("log of a real ring", || real_log::run(&library));
     steps.step("sketches with a faulty module", || line_faults::run(&library));
     steps.step("other work in loop(), a corner", || loads::run(&library, None, false));

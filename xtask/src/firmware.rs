@@ -176,6 +176,18 @@ fn c_example(board: &Board) -> Result<()> {
     Ok(())
 }
 
+/// The command that runs a program on the emulated Cortex-M0, built in this folder from its manifest and its source.
+pub(crate) fn on_m0(folder: &Path, name: &str, manifest: &str, main: &str) -> Result<Command> {
+    let [microbit, ..] = &BOARDS;
+    fs::create_dir_all(folder.join("src"))?;
+    fs::write(folder.join("Cargo.toml"), manifest)?;
+    fs::write(folder.join("src/main.rs"), main)?;
+    let (mut cargo, target) = (cargo_for_target(microbit.target)?, absolute("target/programs-m0")?);
+    cargo.current_dir(folder).env("CARGO_TARGET_DIR", &target).env("RUSTFLAGS", "-Clink-arg=-Tlink.x");
+    run(cargo.args(["build", "--quiet", "--release", "--target", microbit.target]))?;
+    Ok(emulator(microbit, &target.join(microbit.target).join("release").join(name), 6))
+}
+
 /// Flash and RAM of an image: the sections that are loaded, and those that are not but for the stack.
 fn sections(board: &Board, name: &str) -> Result<(u64, u64)> {
     let image = image(board, name)?;

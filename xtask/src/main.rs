@@ -79,7 +79,7 @@ enum Verb {
     },
     /// Build what `eeruf design --program` writes in each language, and run it to what it accepts, on a simulated Uno
     /// too
-    Programs,
+    Programs(arduino::Drawn),
     /// Build the wheel and test it: types, examples, and against what Rust says
     Python,
     /// Run a ring on an emulated board, its serial line and the ROS 2 node, and listen with Cyclone DDS, Fast DDS and
@@ -142,7 +142,7 @@ fn main() -> ExitCode {
         Verb::Examples { board } => examples::examples(board.as_deref(), &mut steps),
         Verb::Micropython => one(&mut steps, "MicroPython", c::micropython),
         Verb::Newping { folder } => one(&mut steps, "NewPing beside eeruf", || arduino::newping(&folder)),
-        Verb::Programs => one(&mut steps, "programs of `eeruf design`", || arduino::programs(false)),
+        Verb::Programs(drawn) => one(&mut steps, "programs of `eeruf design`", || arduino::programs(&drawn, false)),
         Verb::Python => one(&mut steps, "Python package", python::python),
         Verb::Ros2 => {
             one(&mut steps, "ROS 2 node", ros2::ros2);

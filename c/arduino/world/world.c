@@ -8,7 +8,8 @@
  * `world`: firings of each module, triggers that came while its line was high, how often its latched line was pulled low, how
  * deep the stack ever was in bytes, and which share of the time, in millionths, passed in interrupts. With --pulses there is also a line for each pulse that sound
  * has ended: the module from 1, whose sound it was: `own`, `earlier` for its own from an earlier firing, `foreign`, and
- * the pulse's width in microseconds. With --eeprom the board's EEPROM begins with these bytes.
+ * the pulse's width in microseconds. With --eeprom the board's EEPROM begins with these bytes. A byte that the sketch
+ * writes to GPIOR0 is a line, too: `read`, the byte, and the number in GPIOR1 (high) and GPIOR2.
  *
  * With --fault a module, counted from 1, has a fault: `cut`, its trigger is not connected, or it has no power; `deaf`, its
  * echo wire is cut; `glitch-high`, cut, with a spike of 5 us on its line 3 ms after each trigger; `glitch-low`, its pulse has
@@ -299,6 +300,11 @@ static void on_serial(struct avr_irq_t *irq, uint32_t value, void *param) {
     length = 0;
 }
 
+static void on_note(struct avr_t *a, avr_io_addr_t address, uint8_t value, void *param) {
+    (void)address, (void)param;
+    printf("world read %u %u\n", value, (unsigned)(a->data[0x4a] << 8 | a->data[0x4b]));
+}
+
 /* Cycles in interrupts; none interrupts another on this controller unless its handler asks for it. */
 static avr_cycle_count_t interrupted, interrupted_since;
 
@@ -412,6 +418,7 @@ int main(int argc, char **argv) {
     avr_irq_register_notify(avr_get_interrupt_irq(avr, AVR_INT_ANY) + AVR_INT_IRQ_RUNNING, on_interrupt, NULL);
     register_pin_changes();
     register_counters();
+    avr_register_io_write(avr, 0x3e, on_note, NULL); /* GPIOR0 */
     for (i = 0; i < module_count; i++) set_line(&modules[i], 0);
     end = (avr_cycle_count_t)(atof(argv[2]) * 16e6);
     while (avr->cycle < end) {

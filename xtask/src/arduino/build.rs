@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::Mutex;
 
 use anyhow::{Result, anyhow};
 use fs_err as fs;
@@ -77,6 +78,8 @@ fn core(board: Board) -> Result<PathBuf> {
     if !Path::new(CORE).exists() {
         return skip(format!("no {CORE}; install arduino-core-avr"));
     }
+    static BUILDS: Mutex<()> = Mutex::new(());
+    let _alone = BUILDS.lock();
     let folder = Path::new(TARGET).join(format!("core-{}", board.names()[1]));
     fs::create_dir_all(&folder)?;
     let archive = folder.join("core.a");

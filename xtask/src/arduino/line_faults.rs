@@ -11,11 +11,12 @@ use eeruf_files::emit::Emit as _;
 use fs_err as fs;
 
 use super::build::{self, Board};
-use super::own_walls::EQUAL_US;
 use super::{ALL, world};
 use crate::measured::cells;
 use crate::steps::edited;
 
+/// Echo time of a wall, in microseconds.
+const EQUAL_US: u32 = 12_000;
 /// Faults of one module's line: as `world.c` names them, and as the file does.
 const FAULTS: [(&str, &str); 9] = [
     ("cut:3", "no power"),

@@ -36,12 +36,12 @@ const SAYS_SO_MS: u32 = 2_000;
 
 /// Work of this many microseconds, begun this long after the previous start; in every turn of `loop()` if that is 0.
 #[derive(Clone, Copy)]
-struct Load {
-    work_us: u32,
-    every_us: u32,
+pub(super) struct Load {
+    pub(super) work_us: u32,
+    pub(super) every_us: u32,
     baud: u32,
     /// Interrupts are masked meanwhile; or it waits for `quietFor()` too.
-    masks: bool,
+    pub(super) masks: bool,
     waits: bool,
     /// Least right readings a second of six polled modules in the alcove: a table's, with edges stamped as seen.
     least: f64,
@@ -51,7 +51,7 @@ struct Load {
     accepted: f64,
 }
 
-const fn load(work_us: u32, every_us: u32, least: f64) -> Load {
+pub(super) const fn load(work_us: u32, every_us: u32, least: f64) -> Load {
     let accepted = if every_us == 0 && work_us > 0 { 0.0 } else { 85.0 };
     Load { work_us, every_us, baud: 115_200, masks: false, waits: false, least, most: [0.0; 2], accepted }
 }
@@ -60,7 +60,7 @@ const fn masked(work_us: u32, waits: bool, most: [f64; 2], accepted: f64) -> Loa
     Load { masks: true, waits, most, accepted, ..load(work_us, 20_000, 0.0) }
 }
 
-const KINDS: [Load; 23] = [
+pub(super) const KINDS: [Load; 23] = [
     load(0, 0, 64.9),
     load(1_000, 5_000, 43.2),
     load(1_600, 10_000, 41.2),
@@ -86,8 +86,20 @@ const KINDS: [Load; 23] = [
     Load { baud: 9_600, ..load(1_000, 5_000, 0.0) },
 ];
 
+/// A number below another, drawn.
+pub(super) fn up_to(state: &mut u64, most: u32) -> u32 {
+    *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+    ((*state >> 33) % u64::from(most)) as u32
+}
+
+/// The sketch's lines that do the work, for others: its variables and its function.
+pub(super) fn work() -> Option<(&'static str, &'static str)> {
+    let (variables, rest) = SKETCH.split_once("struct {")?.1.split_once("void setup")?;
+    Some((variables, rest.split_once("void doWork")?.1.split_once("void loop")?.0))
+}
+
 impl Load {
-    fn name(&self) -> String {
+    pub(super) fn name(&self) -> String {
         let how = match (self.masks, self.waits) {
             (true, true) => " masked while quiet",
             (true, false) => " masked",
@@ -104,10 +116,7 @@ impl Load {
 
     /// Draws a load: 0.2 to 8 ms, for up to half of the time; one in five in every turn.
     fn drawn(state: &mut u64) -> Self {
-        let mut up_to = |most: u32| {
-            *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-            ((*state >> 33) % u64::from(most)) as u32
-        };
+        let mut up_to = |most: u32| up_to(state, most);
         let work_us = 200 + 100 * up_to(79);
         let every_us = 2 * work_us + 100 * up_to(400);
         if up_to(5) == 0 { load(1_000 * work_us.div_ceil(1_000), 0, 0.0) } else { load(work_us, every_us, 0.0) }
@@ -135,8 +144,8 @@ impl Load {
         .collect()
     }
 
-    /// Returns the bytes that the sketch reads.
-    fn eeprom(&self) -> String {
+    /// The bytes that the sketch reads.
+    pub(super) fn eeprom(&self) -> String {
         let numbers = [self.work_us, self.every_us, self.baud].map(u32::to_le_bytes).concat();
         let bytes = numbers.into_iter().chain([self.masks.into(), self.waits.into()]);
         bytes.fold(String::new(), |mut hex, byte| {

@@ -1,126 +1,301 @@
 //! `cargo xtask programs`: what `eeruf design --program` writes, built as whoever asked for it would, and run to what
 //! it accepts: on modules that are each before a wall of their own, and sketches also in an alcove where modules hear
-//! each other.
+//! each other. With `--combinations` it draws way, language, number of modules, and what else the loop does.
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::thread;
 
-use anyhow::{Context as _, Result, ensure};
+use anyhow::{Context as _, Result, bail, ensure};
 use fs_err as fs;
 
 use super::build::{self, Board};
-use super::own_walls::{self, LEAST, enough};
-use super::{Example, world};
+use super::loads::{self, Load};
+use super::world::{self, Heard};
 use crate::steps::{edited, empty, output, run};
 use crate::toolchain::program;
 
-/// A program that is asked for: ring file, options, and whether it is one of the few that CI runs.
-struct Asked(&'static str, &'static str, bool);
+/// Combinations to draw.
+#[derive(clap::Args, Default)]
+pub(crate) struct Drawn {
+    /// Run this many programs whose way, language, number of modules and other work are drawn, instead of those of the
+    /// table in docs/log/arduino.md; by default none
+    #[arg(long, value_name = "N", default_value_t = 0)]
+    combinations: usize,
+    /// The seed that they are drawn by
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+}
+
+/// A program that is asked for: ring file or number of modules, options, and what else its loop does.
+struct Asked {
+    ring: String,
+    options: String,
+    load: Option<Load>,
+}
 
 const CAR: &str = "tests/data/car-4.toml";
+/// A ring whose file names no module, and which listens for no longer than to its ranges.
+const CAR_12: &str = "rings/car-12.toml";
 const MAVLINK: &str = "arduino --mavlink";
-const EIGHT: &str = "rings/hc-sr04-8.toml";
-const ASKED: [Asked; 17] = [
-    Asked(CAR, "arduino", true),
-    Asked(CAR, "arduino --way sequential", false),
-    Asked(CAR, "arduino --way two-phases", false),
-    Asked(CAR, MAVLINK, true),
-    Asked("tests/programs/hc-sr04-2.toml", "arduino", false),
-    Asked("tests/programs/hc-sr04-6.toml", "arduino", false),
-    Asked(EIGHT, "arduino", false),
-    Asked(EIGHT, "arduino --way groups", true),
-    Asked("tests/programs/hc-sr04-12.toml", "arduino", false),
-    Asked("tests/programs/hc-sr04-12.toml", "arduino --board mega", false),
-    Asked(CAR, "c", false),
-    Asked(EIGHT, "c --way groups", true),
-    Asked("tests/programs/hc-sr04-12.toml", "c", false),
-    Asked(CAR, "micropython", true),
-    Asked(EIGHT, "micropython --way sequential", false),
-    Asked(CAR, "rust", true),
-    Asked(EIGHT, "rust --way groups", false),
-];
+const RINGS: [&str; 8] =
+    [CAR, "2", "6", "rings/hc-sr04-8.toml", "12", "rings/magni-5.toml", "rings/nao-2.toml", CAR_12];
+const LANGUAGES: [&str; 4] = ["arduino", "c", "rust", "micropython"];
+const WAYS: [&str; 4] = ["flow", "sequential", "groups", "two-phases"];
+/// Combinations that run in CI.
+const CORNER: usize = 5;
 /// Folder of the harnesses.
 const WALLS: &str = "tests/programs";
+/// A sketch's line that looks for a reading, after which it is counted.
+const READ: &str = "  if (!sonar.read() || Serial.availableForWrite() < 14) return;\n";
+const COUNTED: &str = "  if (!sonar.read()) return;
+  if (sonar.accepted()) {
+    GPIOR1 = sonar.millimetres() >> 8;
+    GPIOR2 = sonar.millimetres();
+    GPIOR0 = sonar.sensor() + 1;
+  }
+  if (Serial.availableForWrite() < 14) return;
+";
 
-/// Runs all programs, or a few of them for a few seconds.
-pub(crate) fn programs(short: bool) -> Result<()> {
-    let folder = PathBuf::from("target/programs");
-    empty(&folder)?;
-    println!(
-        "| ring | program | accepted before walls, worst module | in the alcove: stack, firings/s, accepted/s, wrong |"
-    );
-    println!("|---|---|---:|---:|");
-    for (number, Asked(ring, options, in_ci)) in ASKED.iter().enumerate() {
-        if short && !in_ci {
-            continue;
-        }
-        let out = folder.join(format!("ring_{number}"));
-        let words = format!("{options} --places 1");
-        let mut design = Command::new(program()?);
-        design.args(["design", ring, "--program"]).args(words.split(' ')).arg("--out").arg(&out);
-        output(&mut design).with_context(|| format!("{ring}: {options}"))?;
-        let row = match options.split(' ').next() {
-            Some("arduino") => sketch(&out, options, if short { 3 } else { 20 }),
-            Some("c") => counted(&c(&out)?),
-            Some("micropython") => {
-                counted(&output(Command::new("python3").arg(format!("{WALLS}/walls.py")).arg(&out))?)
+/// Shares in percent: firings accepted, of all and of the worst module; wrong ones of those accepted, before walls and
+/// in the alcove. And whether the program says that it is too slow.
+#[derive(Default)]
+struct Figures {
+    accepted: f64,
+    worst: f64,
+    wrong: f64,
+    in_alcove: Option<(u32, f64)>,
+    says_so: bool,
+}
+
+/// Runs all, or a few of them for a few seconds, or what is drawn.
+pub(crate) fn programs(drawn: &Drawn, short: bool) -> Result<()> {
+    let folder = Path::new("target/programs");
+    empty(folder)?;
+    let (world, program) = (world::build()?, program()?);
+    let mut state = drawn.seed;
+    let mut asked = vec![];
+    let rings = match drawn.combinations {
+        0 => &RINGS[..if short { 1 } else { RINGS.len() }],
+        _ => &[],
+    };
+    for ring in rings {
+        // Its sensors have limits of their own, which MicroPython's ring has not.
+        let languages = &LANGUAGES[..if *ring == CAR_12 { 3 } else { 4 }];
+        asked.extend(languages.iter().chain([&MAVLINK].into_iter().filter(|_| *ring == CAR)).map(|options| Asked {
+            ring: (*ring).to_owned(),
+            options: (*options).to_owned(),
+            load: None,
+        }));
+    }
+    let count = if short { CORNER } else { drawn.combinations };
+    asked.extend((0..count).map(|_| Asked::drawn(&mut state)));
+    println!("| ring | program | other work | accepted | worst module | wrong | in the alcove: stack, wrong |");
+    println!("|---|---|---|---:|---:|---:|---:|");
+    let workers = thread::available_parallelism().map_or(1, usize::from);
+    let (next, failed) = (AtomicUsize::new(0), Mutex::new(vec![]));
+    let work = || {
+        while let Some((number, asked)) =
+            Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|n| Some((n, asked.get(n)?)))
+        {
+            let work = asked.load.as_ref().map_or_else(|| "-".to_owned(), Load::name);
+            let name = format!("{} | {} | {work}", asked.ring, asked.options);
+            match asked.row(&folder.join(format!("ring_{number}")), short, [&program, &world]) {
+                Ok(row) => println!("| {name} | {row} |"),
+                Err(error) => failed.lock().unwrap_or_else(PoisonError::into_inner).push(error.context(name)),
             }
-            _ => counted(&rust(&out)?),
+        }
+    };
+    thread::scope(|scope| (0..workers).for_each(|_| _ = scope.spawn(work)));
+    let failed = failed.into_inner().unwrap_or_else(PoisonError::into_inner);
+    let skipped = failed.iter().position(anyhow::Error::is::<crate::steps::Skipped>);
+    let broken = failed.iter().map(|error| format!("{error:#}")).collect::<Vec<_>>().join("\n");
+    match skipped.and_then(|skipped| failed.into_iter().nth(skipped)) {
+        Some(skipped) => Err(skipped),
+        None if broken.is_empty() => Ok(()),
+        None => bail!("{broken}"),
+    }
+}
+
+impl Asked {
+    /// One that there can be.
+    fn drawn(state: &mut u64) -> Self {
+        loop {
+            let mut up_to = |most: usize| loads::up_to(state, most as u32) as usize;
+            let (modules, way, language) = (2 + up_to(23), WAYS[up_to(4)], LANGUAGES[up_to(4)]);
+            let kinds = loads::KINDS.len();
+            let number = up_to(kinds + 1);
+            let load = if number < kinds { loads::KINDS[number] } else { loads::load(20_000, 500_000, 0.0) };
+            let polled = up_to(4) == 0;
+            let (sketch, python) = (language == "arduino", language == "micropython");
+            // A Pico has pins for 13, and the emulated board twelve fake modules.
+            let most = if python {
+                13
+            } else if language == "rust" {
+                12
+            } else {
+                24
+            };
+            let is_unknown = python && ["groups", "two-phases"].contains(&way) || load.masks && !sketch;
+            if modules > most || is_unknown || way == "groups" && modules % 4 != 0 {
+                continue;
+            }
+            let board = if sketch && modules > 16 { " --board mega" } else { "" };
+            let edges = if sketch && polled { " polled" } else { "" };
+            let options = format!("{language} --way {way}{board}{edges}");
+            return Self { ring: modules.to_string(), options, load: Some(load) };
+        }
+    }
+
+    /// The columns of its figures, if they are enough.
+    fn row(&self, out: &Path, short: bool, [program, world]: [&Path; 2]) -> Result<String> {
+        let seconds = if short { 3 } else { 5 };
+        let mut text = match self.ring.parse::<usize>() {
+            Ok(modules) => format!("sensors = {modules}\nlayout = \"ring\"\nspeed_m_s = 0.5\n"),
+            Err(_) => fs::read_to_string(&self.ring)?,
         };
-        println!("| {ring} | {options} | {} |", row.with_context(|| format!("{ring}: {options}"))?);
+        if !text.contains("\nmodule = ") {
+            text = format!("module = \"hc-sr04\"\n{text}");
+        }
+        let ring = out.with_extension("toml");
+        fs::write(&ring, text)?;
+        let words = format!("{} --places 1 --budget 20000", self.options.replace(" polled", ""));
+        let mut design = Command::new(program);
+        output(design.arg("design").arg(ring).arg("--program").args(words.split(' ')).arg("--out").arg(out))?;
+        let polled = self.options.ends_with("polled") || self.options.starts_with("micropython");
+        let figures = match self.options.split(' ').next() {
+            Some("arduino") if self.options == MAVLINK => return obstacles(world, out, seconds),
+            Some("arduino") => self.sketch(out, seconds, world)?,
+            Some("micropython") => self.counted(Command::new("python3").arg(format!("{WALLS}/walls.py")).arg(out))?,
+            Some("c") => self.counted(&mut c(out)?)?,
+            _ => self.counted(&mut rust(out, &self.work())?)?,
+        };
+        let Figures { accepted, worst, wrong, in_alcove, says_so } = figures;
+        let (least, least_of_worst) = match self.load {
+            None => (95.0, 85.0),
+            Some(_) if polled || self.options.contains("two-phases") || says_so => (0.0, 0.0),
+            Some(_) => (70.0, 70.0),
+        };
+        let foreign = in_alcove.map_or(0.0, |(_, foreign)| foreign);
+        let mut row =
+            format!("{accepted:.1} % | {worst:.1} %{} | {wrong:.1} %", if says_so { ", says so" } else { "" });
+        row += &in_alcove.map_or(" | not run".to_owned(), |(stack, wrong)| format!(" | {stack}, {wrong:.1} %"));
+        ensure!(
+            accepted >= least && worst >= least_of_worst && wrong == 0.0 && foreign <= 1.0,
+            "{row}; expected {least} % accepted, {least_of_worst} % of the worst module, and 1 % wrong in the alcove"
+        );
+        // By all but tables a late poll costs time alone.
+        ensure!(
+            !says_so || self.load.is_some_and(|load| load.work_us > 0),
+            "{row}; expected that it does not say that it is too slow"
+        );
+        Ok(row)
     }
-    Ok(())
+
+    /// The work of its loop, after how much time again, and by how much walls are apart, in microseconds.
+    fn work(&self) -> [String; 3] {
+        let [work, every] = self.load.map_or([0; 2], |load| [load.work_us, load.every_us]);
+        [work, every, if self.ring == CAR_12 { 9 } else { 20 }].map(|us| us.to_string())
+    }
+
+    /// Figures of a harness that prints, for each module, its readings, those accepted and those wrong. It takes the load
+    /// from the environment.
+    fn counted(&self, harness: &mut Command) -> Result<Figures> {
+        let said = output(harness.env("LOAD", self.work().join(" ")))?;
+        let numbers = |line: &str| line.split(' ').map(|word| word.parse::<f64>().ok()).collect::<Option<Vec<_>>>();
+        let counts: Vec<[f64; 3]> = said.lines().filter_map(|line| numbers(line)?.try_into().ok()).collect();
+        let [readings, accepted, wrong] =
+            counts.iter().fold([0.0; 3], |sum, of| std::array::from_fn(|n| sum[n] + of[n]));
+        ensure!(readings > 20.0 * counts.len() as f64, "{readings} readings of {} modules:\n{said}", counts.len());
+        let worst = counts.iter().map(|[readings, accepted, _]| 100.0 * accepted / readings.max(1.0)).reduce(f64::min);
+        Ok(Figures {
+            accepted: 100.0 * accepted / readings,
+            worst: worst.context("no modules")?,
+            wrong: 100.0 * wrong / accepted.max(1.0),
+            says_so: said.contains("too slow"),
+            ..Figures::default()
+        })
+    }
+
+    /// A sketch: built as the IDE does, from its folder alone. One of eight modules or less is run in the alcove, too.
+    fn sketch(&self, folder: &Path, seconds: u32, world: &Path) -> Result<Figures> {
+        let mut text = sketch_in(folder)?;
+        let mut eeprom = String::new();
+        if let Some(load) = &self.load {
+            let (work, does) = loads::work().context("the sketch of loads has other lines")?;
+            let setup =
+                format!("struct {{{work}void doWork{does}void setup() {{\n  eeprom_read_block(&work, 0, sizeof work);");
+            text = edited(
+                &text,
+                &[
+                    ("void setup() {", &setup),
+                    ("Serial.begin(115200)", "Serial.begin(work.baud)"),
+                    ("void loop() {", "void loop() {\n  doWork();"),
+                    (READ, COUNTED),
+                ],
+            )?;
+            let polled = if self.options.ends_with("polled") { "#define EERUF_POLLED\n" } else { "" };
+            text = format!("{polled}#include <avr/eeprom.h>\n{text}");
+            eeprom = load.eeprom();
+        }
+        let (board, options) = match self.options.contains("mega") {
+            true => (Board::Mega, vec!["--mega"]),
+            false => (Board::Uno, vec![]),
+        };
+        let (elf, pins) = built(folder, board, &text)?;
+        let options = [&options[..], &["--eeprom", &eeprom]].concat();
+        let modules = pins.len() / 2;
+        let ways = folder.join("walls.txt");
+        // By the golden section, so that no two are alike.
+        let span: usize = self.work()[2].parse()?;
+        let walls = (0..modules).map(|x| format!("{x} {x} {}\n", 1_500 + x * 618 % 1000 * span));
+        fs::write(&ways, walls.collect::<String>())?;
+        let own_mm = world::own_walls(&fs::read_to_string(&ways)?);
+        let said = output(&mut world::command(world, &options, &elf, seconds, &ways, &pins))?;
+        let read = |line: &str| match (self.load, line.strip_prefix("world read ")) {
+            (Some(_), Some(read)) => Some(format!("{read}\n")),
+            (Some(_), None) => line.starts_with("world ").then(|| format!("{line}\n")),
+            (None, _) => Some(format!("{line}\n")),
+        };
+        let heard = Heard::of(&said.lines().filter_map(read).collect::<String>(), &own_mm);
+        // Where every echo counts, so does the first, which they leave out.
+        let (accepted, worst) = (heard.shares().0.min(100.0), heard.shares().1.0.min(100.0));
+        let wrong = heard.wrong_percent();
+        let mut in_alcove = None;
+        if modules <= 8 {
+            let own_mm = world::own_walls(&fs::read_to_string(world::KEPT)?);
+            let mut command = world::command(world, &options, &elf, seconds, Path::new(world::KEPT), &pins);
+            let heard = world::hear_by(&mut command, seconds, &own_mm)?;
+            in_alcove = Some((heard.stack, heard.wrong_percent()));
+        }
+        Ok(Figures { accepted, worst, wrong, in_alcove, says_so: said.contains("too slow") })
+    }
 }
 
-/// A row of a harness that says how many readings there were, how many accepted, how many of them wrong.
-fn counted(said: &str) -> Result<String> {
-    let numbers = |line: &str| line.split(' ').map(|word| word.parse::<u32>().ok()).collect::<Option<Vec<_>>>();
-    let counts = said.lines().filter_map(numbers).find(|counts| counts.len() == 3).unwrap_or_default();
-    let [readings, accepted, wrong] = counts[..] else { anyhow::bail!("expected three counts, not: {said}") };
-    let share = 100.0 * f64::from(accepted) / f64::from(readings.max(1));
-    ensure!(
-        share >= LEAST.1 && readings > 100 && wrong == 0,
-        "{accepted} of {readings} readings accepted, {wrong} of them wrong; expected {} % and none",
-        LEAST.1
-    );
-    Ok(format!("{share:.1} % | not run"))
-}
-
-/// A sketch: built as the IDE does, from its folder alone; one of eight that fires as recommended also in the alcove.
-fn sketch(folder: &Path, options: &str, seconds: u32) -> Result<String> {
-    let world = world::build()?;
+fn sketch_in(folder: &Path) -> Result<String> {
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
-    let text = fs::read_to_string(folder.join(format!("{name}.ino")))?;
-    let board = if options.contains("mega") { Board::Mega } else { Board::Uno };
-    let include = folder.to_string_lossy();
-    let warnings = ["-Wall", "-Wextra", "-Werror", "-I", &*include];
-    let built = build::sketch(&folder.join("src/eeruf"), board, &name, &text, &warnings)?;
-    let pins = ["TRIGGERS", "ECHOES"].map(|list| pins(&text, list).or_else(|| pins(&text, "PINS")).unwrap_or_default());
-    if options == MAVLINK {
-        return Ok(format!("{}, {}", built.flash, obstacles(&world, &built.elf, &pins.concat(), seconds)?));
-    }
-    let shares = own_walls::accepted(&world, &built.elf, board, pins.each_ref().map(|pins| &pins[..]), seconds, true)?;
-    let (all, worst) = enough(&name, shares, LEAST)?;
-    let mut row = format!("{all:.1} %, {worst:.1} % | ");
-    if options == "arduino" && pins[0].len() == 8 {
-        let [triggers, echoes] = pins.map(|pins| &*pins.leak());
-        let example = Example::new("the program", triggers, echoes, true);
-        let heard = world::hear(&world, &built.elf, &example, seconds, false)?;
-        heard.is_plausible(&example)?;
-        row += &heard.row();
-    } else {
-        row += "not run";
-    }
-    Ok(row)
+    Ok(fs::read_to_string(folder.join(format!("{name}.ino")))?)
+}
+
+/// Builds a sketch as the IDE does, from its folder alone: the program, and its pins, triggers and then echoes.
+fn built(folder: &Path, board: Board, text: &str) -> Result<(std::path::PathBuf, Vec<u8>)> {
+    let name = folder.file_name().unwrap_or_default().to_string_lossy();
+    let warnings = ["-Wall", "-Wextra", "-Werror", "-I", &*folder.to_string_lossy()];
+    let elf = build::sketch(&folder.join("src/eeruf"), board, &name, text, &warnings)?.elf;
+    let pins = ["TRIGGERS", "ECHOES"].map(|list| pins(text, list).or_else(|| pins(text, "PINS")).unwrap_or_default());
+    Ok((elf, pins.concat()))
 }
 
 /// The rate of `OBSTACLE_DISTANCE` of a car's sketch, whose last must show the wall of each module.
-fn obstacles(world: &Path, elf: &Path, pins: &[u8], seconds: u32) -> Result<String> {
+fn obstacles(world: &Path, folder: &Path, seconds: u32) -> Result<String> {
+    let (elf, pins) = built(folder, Board::Uno, &sketch_in(folder)?)?;
     // Ahead, left, right, behind, at 1 to 4 m: the sector that looks there, of 5 degrees clockwise from -20 on.
-    let ways = Path::new("target/programs/walls.txt");
-    fs::write(ways, "0 0 5828\n1 1 11655\n2 2 17483\n3 3 23310\n")?;
+    let ways = folder.join("walls.txt");
+    fs::write(&ways, "0 0 5828\n1 1 11655\n2 2 17483\n3 3 23310\n")?;
     let sectors = [4, 58, 22, 40];
-    let ran = world::command(world, &[], elf, seconds, ways, pins).output()?;
+    let ran = world::command(world, &[], &elf, seconds, &ways, &pins).output()?;
     let frames: Vec<_> = (0..ran.stdout.len()).filter_map(|at| sectors_in(&ran.stdout[at..])).collect();
     let last = frames.last().context("no OBSTACLE_DISTANCE")?;
     for (sector, metres) in sectors.into_iter().zip([100, 200, 300, 400]) {
@@ -128,7 +303,7 @@ fn obstacles(world: &Path, elf: &Path, pins: &[u8], seconds: u32) -> Result<Stri
     }
     let rate = frames.len() as u32 / seconds;
     ensure!(rate >= 4, "{rate} OBSTACLE_DISTANCE a second; expected 4");
-    Ok(format!("{rate} OBSTACLE_DISTANCE a second"))
+    Ok(format!("{rate} OBSTACLE_DISTANCE a second | - | - | -"))
 }
 
 /// The distances of an `OBSTACLE_DISTANCE` that these bytes begin with, if it is whole.
@@ -152,7 +327,7 @@ fn pins(text: &str, list: &str) -> Option<Vec<u8>> {
     inside.split(", ").map(|pin| pin.parse().ok()).collect()
 }
 
-fn c(folder: &Path) -> Result<String> {
+fn c(folder: &Path) -> Result<Command> {
     let program = folder.join("walls");
     let sources = ["sonar.c", "eeruf.c"].map(|file| folder.join(file));
     run(Command::new("gcc")
@@ -162,22 +337,28 @@ fn c(folder: &Path) -> Result<String> {
         .args(sources)
         .arg("-o")
         .arg(&program))?;
-    output(&mut Command::new(program))
+    Ok(Command::new(program))
 }
 
-/// A crate, with the crates of this checkout for those of the repository that it names.
-fn rust(folder: &Path) -> Result<String> {
+/// A crate on an emulated Cortex-M0, with the crates of this checkout for those of the repository that it names.
+fn rust(folder: &Path, [work, every, span]: &[String; 3]) -> Result<Command> {
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
     let (root, manifest) = (std::env::current_dir()?, folder.join("Cargo.toml"));
-    let here = |name| format!("{name} = {{ path = \"{}\"", root.join("crates").join(name).display());
-    let there = |name| format!(r#"{name} = {{ git = "https://github.com/eeruf/eeruf""#);
-    let [core, driver] = ["eeruf-core", "eeruf-hc-sr04"];
-    let text = fs::read_to_string(&manifest)?;
-    fs::write(&manifest, edited(&text, &[(&there(core), &here(core)), (&there(driver), &here(driver))])?)?;
-    fs::create_dir_all(folder.join("tests"))?;
-    let harness = fs::read_to_string(format!("{WALLS}/walls.rs"))?.replace("NAME", &name);
-    fs::write(folder.join("tests/walls.rs"), harness)?;
-    let mut cargo = Command::new("cargo");
-    cargo.current_dir(folder).env("CARGO_TARGET_DIR", root.join("target/programs-rust"));
-    output(cargo.args(["test", "--quiet", "--test", "walls", "--", "--nocapture"]))
+    let mut text = fs::read_to_string(&manifest)?;
+    for name in ["eeruf-core", "eeruf-hc-sr04"] {
+        let here = format!("{name} = {{ path = \"{}\"", root.join("crates").join(name).display());
+        text = edited(&text, &[(&format!(r#"{name} = {{ git = "https://github.com/eeruf/eeruf""#), &here)])?;
+    }
+    fs::write(&manifest, text)?;
+    let root = root.to_string_lossy();
+    let mut values = vec![("NAME", &*name), ("ROOT", &root), ("WORK", work), ("EVERY", every), ("SPAN", span)];
+    if !fs::read_to_string(folder.join("src/lib.rs"))?.contains("seed: u32") {
+        // A table has no dice, and asks for no speed.
+        values.extend([("7, now", "now"), ("    ring.moving(0, 0, now);\n", "")]);
+    }
+    let harness = |file: &str| {
+        let text = fs::read_to_string(Path::new(WALLS).join(file))?;
+        anyhow::Ok(values.iter().fold(text, |text, (name, value)| text.replace(name, value)))
+    };
+    crate::firmware::on_m0(&folder.join("m0"), &format!("m0-{name}"), &harness("m0.toml")?, &harness("m0.rs")?)
 }

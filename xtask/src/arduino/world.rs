@@ -25,7 +25,7 @@ pub(super) struct Heard {
     seconds: u32,
     firings: Vec<u32>,
     ignored: u32,
-    stack: u32,
+    pub(super) stack: u32,
     /// The share of the time spent in interrupts, in millionths.
     interrupts: u32,
     accepted: u32,
@@ -63,6 +63,7 @@ pub(super) fn build() -> Result<PathBuf> {
     if !Path::new("/usr/include/simavr/sim_avr.h").exists() {
         return skip("no simavr; install libsimavr-dev libelf-dev".to_owned());
     }
+    fs::create_dir_all(TARGET)?;
     let world = Path::new(TARGET).join("world");
     run(Command::new("gcc")
         .args(["-std=gnu99", "-O2", "-Wall", "-Wextra", "-Werror", "c/arduino/world/world.c", "-o"])
@@ -247,6 +248,11 @@ impl Heard {
         Ok(())
     }
 
+    /// The share of accepted readings that are wrong, in percent.
+    pub(super) fn wrong_percent(&self) -> f64 {
+        100.0 * f64::from(self.wrong) / f64::from(self.accepted.max(1))
+    }
+
     /// The columns of the table beside NewPing.
     pub(super) fn row_beside_newping(&self) -> String {
         let per_second = |count: u32| format!("{:.1}", f64::from(count) / f64::from(self.seconds));
@@ -261,7 +267,7 @@ impl Heard {
     /// The columns of the table.
     pub(super) fn row(&self) -> String {
         let per_second = |count: u32| f64::from(count) / f64::from(self.seconds);
-        let wrong = 100.0 * f64::from(self.wrong) / f64::from(self.accepted.max(1));
+        let wrong = self.wrong_percent();
         let firings = per_second(self.firings.iter().sum());
         format!("{} | {firings:.1} | {:.1} | {wrong:.1} %", self.stack, per_second(self.accepted))
     }

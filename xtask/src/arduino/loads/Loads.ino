@@ -43,6 +43,14 @@ void doWork() {
 
 void loop() {
   doWork();
+#if POLLED
+  // The robot stands, and says so: edges seen late, and walls that may come nearer, would let foreign sound in.
+  static uint32_t told;
+  if (millis() - told >= 200) {
+    told = millis();
+    sonar.moving(0);
+  }
+#endif
   if (sonar.tooSlow()) {
     Serial.print(F("slow "));
     Serial.println(millis());

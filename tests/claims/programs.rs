@@ -53,7 +53,11 @@ fn programs_that_cannot_be_are_refused_by_what_is_expected() {
             "micropython --board mega",
             "expected one that this program is written for: pico, esp32",
         ),
-        ("rings/hc-sr04-8.toml", "micropython --way two-phases", "--way two-phases: expected --program arduino, c or rust"),
+        (
+            "rings/hc-sr04-8.toml",
+            "micropython --way two-phases",
+            "--way two-phases: expected --program arduino, c or rust",
+        ),
         ("rings/hc-sr04-8.toml", "ros2 --way sequential", "--way sequential: expected flow"),
         ("rings/hc-sr04-8.toml", "micropython --way groups", "sensors that fire together"),
         ("tests/data/car-4.toml", "rust --mavlink", "--mavlink: expected --program arduino or c"),

@@ -3,8 +3,8 @@
 mod boards;
 
 use clap::ValueEnum;
-use eeruf_core::Micros;
 use eeruf_core::flow::{TurnSettings, Votes};
+use eeruf_core::{Layout, Micros};
 use eeruf_design::{FlowDesign, RingDesign, RingSpec, Way};
 use eeruf_files::emit::{Flow, Form};
 use eeruf_files::rotation;
@@ -92,11 +92,7 @@ pub(crate) fn program(wanted: &Wanted<'_>, language: Language, board: Option<Boa
         return Err("--mavlink: expected --program arduino or c; the ROS 2 node has a parameter `mavlink`".to_owned());
     }
     if wanted.mavlink && spec.places.poses.is_empty() {
-        return Err(
-            "--mavlink: the ring file does not say where its sensors look; expected poses, or spacing_deg and \
-                    radius_m"
-                .to_owned(),
-        );
+        return Err("--mavlink: no places of sensors; expected poses, or spacing_deg and radius_m".to_owned());
     }
     let flow = if wanted.way == Way::TwoPhases { None } else { Some(spec.fired(wanted.way, wanted.robot, 1)?) };
     let about = wanted.about(flow.as_ref(), wiring.as_ref());
@@ -411,9 +407,14 @@ fn ros2(wanted: &Wanted<'_>, about: &[String], wiring: &Wiring) -> Result<Progra
         return Err(format!("--way {}: expected flow, by which the node fires", wanted.way.name()));
     }
     let values = [("triggers", &*list(&wiring.triggers)), ("echoes", &*list(&wiring.echoes))];
+    // The node publishes where sensors are: without places, those for which `design` chose the way.
+    let spec = &wanted.design.spec;
+    let is_assumed = spec.places.poses.is_empty() && matches!(spec.layout.layout(), Layout::Ring(_));
+    let spacing_deg = 360.0 / spec.sensors as f64;
+    let places = format!("# Assumed: measure your own.\nspacing_deg = {spacing_deg}\nradius_m = 0.2\n\n");
     let files = vec![
         ("eeruf.yaml".to_owned(), comments(about, "#") + &filled(include_str!("templates/eeruf.yaml"), &values)),
-        ("ring.toml".to_owned(), wanted.file.1.to_owned()),
+        ("ring.toml".to_owned(), if is_assumed { places } else { String::new() } + wanted.file.1),
     ];
     Ok(Program { files, next: "in its folder: `ros2 launch eeruf_ros2 eeruf.launch.py params_file:=$PWD/eeruf.yaml`" })
 }

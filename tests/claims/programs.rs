@@ -28,6 +28,10 @@ fn readme_goes_from_four_lines_to_a_program_in_each_language() {
         let text = std::fs::read_to_string(folder.path().join(main)).unwrap();
         let whole = std::fs::read_dir(&out).unwrap().count() >= 2 && !text.contains('@');
         assert!(whole, "{language}: a placeholder is left, or a file is missing:\n{text}");
+        if language == "ros2" {
+            let written = std::fs::read_to_string(out.join("ring.toml")).unwrap();
+            assert_eq!(eeruf_design::RingSpec::in_file(&out, &written).unwrap().places.poses.len(), 8, "{written}");
+        }
         let again = eeruf(&words);
         assert_eq!(again.code, Some(2));
         assert!(again.err.contains("it is there already; expected a new folder, by --out DIR"), "{}", again.err);
@@ -61,7 +65,7 @@ fn programs_that_cannot_be_are_refused_by_what_is_expected() {
         ("rings/hc-sr04-8.toml", "ros2 --way sequential", "--way sequential: expected flow"),
         ("rings/hc-sr04-8.toml", "micropython --way groups", "sensors that fire together"),
         ("tests/data/car-4.toml", "rust --mavlink", "--mavlink: expected --program arduino or c"),
-        ("rings/hc-sr04-8.toml", "c --mavlink", "does not say where its sensors look; expected poses"),
+        ("rings/hc-sr04-8.toml", "c --mavlink", "no places of sensors; expected poses"),
     ] {
         let words = format!("design {ring} --places 1 --program {options}");
         let words: Vec<_> = words.split(' ').collect();

@@ -4,9 +4,8 @@ use crate::placing::Place;
 use crate::range::{Distance, Scale};
 use crate::view::View;
 
-/// The view along a heading from the robot's centre, with the distance from there. The nearest obstacle counts first,
-/// then an unknown view. A direction is free if every sensor whose cone holds the ray at the maximum range calls it
-/// clear.
+/// The view along a heading, and the distance from the robot's centre. The nearest obstacle counts, else an unknown
+/// view; a direction is free if every sensor whose cone holds the ray at the maximum range calls it clear.
 pub(crate) fn along(
     heading_rad: f64,
     places: &[Place],

@@ -77,8 +77,7 @@ fn lint() -> Result<()> {
     run(cargo(microbit)?.args(strict).args(["--target", microbit.target, "--", "--deny", "warnings"]))
 }
 
-/// `cargo` for a board, in the firmware's own workspace. To read stacks, an unstable option has the compiler write
-/// each frame's size into the program.
+/// `cargo` for a board, in the firmware's own workspace; for stacks, an unstable option adds the size of each frame.
 fn cargo(board: &Board) -> Result<Command> {
     let mut cargo = cargo_for_target(board.target)?;
     cargo.current_dir("firmware");

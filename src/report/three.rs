@@ -11,7 +11,7 @@ use super::table::markdown;
 pub(crate) struct Three<'a> {
     pub(crate) chosen: &'a Measured,
     pub(crate) measured: &'a Measured,
-    /// The family of the way beside one by one.
+    /// The family of the way compared with one by one.
     pub(crate) other: Family,
     /// True if the other way is recommended; `None` lets the measurement decide.
     pub(crate) is_recommended: Option<bool>,

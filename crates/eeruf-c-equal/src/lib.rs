@@ -108,7 +108,7 @@ impl Drop for C {
 }
 
 impl C {
-    /// Makes an empty one.
+    /// Makes one without a ring or schedules.
     pub fn new() -> Self {
         // SAFETY: takes nothing.
         Self(unsafe { shim::shim_new() })

@@ -49,7 +49,7 @@ pub struct Schedule<const K: usize, const M: usize = 2> {
     t_lag: [Micros; K],
     t_wait: [[Micros; K]; M],
     sensors: u8,
-    /// Only in a [`VerifiedSchedule`](crate::VerifiedSchedule), and in copies of what it holds.
+    /// Set in a [`VerifiedSchedule`](crate::VerifiedSchedule) and in copies of its schedule; else `None`.
     verified_for: Option<VerifiedFor>,
 }
 

@@ -3,7 +3,7 @@
 
 use super::super::Settings;
 
-/// The fastest that a path's travel time changes, in microseconds for each millisecond: both ends of it at 2 m/s.
+/// The fastest change of a path's travel time, in microseconds per millisecond: both ends move at 2 m/s.
 pub(super) const MOST_RATE: f64 = 12.0;
 /// Bins of rates, and their number.
 const BIN_RATE: f64 = 0.5;

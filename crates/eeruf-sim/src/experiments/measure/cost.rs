@@ -11,7 +11,7 @@ use super::ways::{Family, MeasuredWay};
 
 /// The most false stops a minute at which ways are compared.
 pub const ONE_A_MINUTE: f64 = 1.0;
-/// Number of rooms from which on a difference above this share is no draw.
+/// With this many rooms or more, a difference above the share below is no draw.
 const MANY_ROOMS: usize = 400;
 const NO_DRAW: f64 = 0.2;
 

@@ -289,17 +289,17 @@ def calls(c: Chance) -> list[Callable[[], Any]]:
         lambda: ANY.Adaptation(m([tables.TABLE_I_D]), m(500), noisy=m(0.3), calm=m(0.1), window_periods=m(1)),
         lambda: ANY.SensorWatch(m(4), m(3)).observe(m(ANY.Reading(m(3), m("first"), m(9_000))), m(0)),
         lambda: ANY.SensorWatch(4).state(m(3), m(0)),
-        lambda: c.random.choice([ANY.Blind, ANY.State, ANY.Fire])(a(), a()).to_dict(),
+        lambda: c.random.choice([ANY.typing.Blind, ANY.State, ANY.Fire])(a(), a()).to_dict(),
         lambda: ANY.sim.Simulation(ROOM).robots[0].to_dict(),
         lambda: READINGS.summary(m(500.0)).to_dict(),
         lambda: READINGS.summary(a()),
         lambda: READINGS.is_wrong(a()),
         lambda: tampered(c),
         lambda: ANY.logs.Firings.of(**{name: m(column) for name, column in FIRINGS.columns().items()}),
-        lambda: c.random.choice([ANY.diagnose, ANY.survey])(m(FIRINGS), tolerance_us=m(75)),
-        lambda: c.random.choice([ANY.read_log, ANY.read_firings])(m("no such file")),
+        lambda: c.random.choice([ANY.logs.diagnose, ANY.logs.survey])(m(FIRINGS), tolerance_us=m(75)),
+        lambda: c.random.choice([ANY.read_log, ANY.logs.read_firings])(m("no such file")),
         lambda: list(ANY.logs.blocks(m(io.BytesIO(b"1.2 1.3\n1.3 1.4\n")), rows=m(1), judge=m(ANY.logs.Agree(500)))),
-        lambda: ANY.replay(m("no such file"), m("quick"), out=m(None), speed_of_sound=m(343.2)),
+        lambda: ANY.logs.replay(m("no such file"), m("quick"), out=m(None), speed_of_sound=m(343.2)),
         lambda: ANY.read_log(c.file("log.csv", b"time,range\n0.1,0.5\n0.2,0.6\n"), time=m("time")).echo_us(
             speed_of_sound=m(343.2)
         ),
@@ -432,9 +432,14 @@ def log_of_firings(c: Chance) -> None:
     """A log of firings whose bytes somebody changed, read and replayed."""
     rows = "".join(f"{at % 2},{40_000 * at},{at // 2},{at // 2 % 2},{9_000 + at}\n" for at in range(8))
     file = c.file("firings.csv", f"sensor,fired_us,period,phase,t_echo_us\n{rows}".encode())
-    c.random.choice([ANY.read_firings, lambda file: ANY.replay(file, ANY.logs.Agree(500)), ANY.diagnose, ANY.survey])(
-        file
-    )
+    c.random.choice(
+        [
+            ANY.logs.read_firings,
+            lambda file: ANY.logs.replay(file, ANY.logs.Agree(500)),
+            ANY.logs.diagnose,
+            ANY.logs.survey,
+        ]
+    )(file)
 
 
 def occupancy_map(c: Chance) -> Path:

@@ -127,11 +127,11 @@ BAD: list[tuple[Callable[[], Any], type[Exception], str]] = [
     (lambda: ANY.read_log("x", time_unit="h"), eeruf.EerufError, 'time_unit = \'h\'; expected "s" or "ms"'),
     (lambda: ANY.read_log("x", no_echo_m=0), eeruf.EerufError, "no_echo_m = 0; expected a number above 0"),
     (
-        lambda: ANY.diagnose(3),
+        lambda: ANY.logs.diagnose(3),
         eeruf.EerufError,
         "log = 3; expected an eeruf.logs.Firings, or the path of a log, a URL or a file object",
     ),
-    (lambda: ANY.survey(FIRINGS, until_us=-1), eeruf.EerufError, "until_us = -1"),
+    (lambda: ANY.logs.survey(FIRINGS, until_us=-1), eeruf.EerufError, "until_us = -1"),
     (
         lambda: ANY.logs.Firings.of(sensor=["a"], fired_us=[0], period=[0], phase=[0], t_echo_us=[1]),
         eeruf.EerufError,
@@ -307,7 +307,7 @@ def test_the_core_never_panics_whatever_it_is_given(arguments: list[Any], layout
         lambda: ANY.Ring(tables.TABLE_I_D, 500, window_us=36_000).disable(arguments[0]),
         lambda: ANY.Fire(arguments[0]),
         lambda: ANY.Reading(*arguments),
-        lambda: ANY.Violation(*arguments, layout, arguments[0]),
+        lambda: ANY.typing.Violation(*arguments, layout, arguments[0]),
         lambda: ANY.Report(*arguments, layout),
         lambda: ANY.Found(*arguments, layout, arguments[0]),
     )

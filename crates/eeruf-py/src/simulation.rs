@@ -253,13 +253,13 @@ impl Simulation {
     ///     LogError: what was left could not be written.
     ///
     /// Example:
-    ///     >>> from eeruf import read_firings, sim
+    ///     >>> from eeruf import logs, sim
     ///     >>> import pathlib, tempfile
     ///     >>> file = pathlib.Path(tempfile.mkdtemp(), "wall.mcap")
     ///     >>> robot = sim.Robot((0, 0, 1.57), sensors=8, spacing_rad=0.26, radius_m=0.3)
     ///     >>> with sim.Simulation(sim.Scene([[5, 2, -5, 2]], robots=[robot]), mcap=file) as world:
     ///     ...     readings = world.step(0.6)
-    ///     >>> len(read_firings(file)) == len(readings)
+    ///     >>> len(logs.read_firings(file)) == len(readings)
     ///     True
     fn close(&self, py: Python<'_>) -> PyResult<()> {
         py.detach(|| self.lock()?.recording.take().map_or(Ok(()), Recording::finish).map_err(logs::raise))

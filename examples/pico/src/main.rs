@@ -1,13 +1,11 @@
-//! Eight HC-SR04 modules on a Raspberry Pi Pico, one on each state machine of its two PIOs. They time triggers and
-//! echoes; the main task fires by flow, and says once a second over USB what is there.
+//! Eight HC-SR04 modules on a Raspberry Pi Pico, one on each state machine of its two PIOs. They fire and time the
+//! echoes by themselves; the main task tells them when, and says over USB what each of them sees.
 #![no_std]
 #![no_main]
 
-use core::fmt;
+mod ring;
 
-use eeruf_core::flow::{BeliefSettings, FlowRing, TurnSettings};
-use eeruf_core::watch::{SensorState, SensorWatch};
-use eeruf_core::{Instant, Micros, RingConfig, SpeedOfSound};
+use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, SpeedOfSound};
 use eeruf_hc_sr04::Settings;
 use eeruf_hc_sr04::capture::{CaptureRing, Captures, LineEdge, PIO_HZ, PIO_PROGRAM, PioLine};
 use embassy_executor::Spawner;
@@ -26,7 +24,6 @@ use panic_halt as _;
 const SENSORS: usize = 8;
 /// Speed of sound in air at 20 degrees Celsius.
 const SOUND: SpeedOfSound = SpeedOfSound::at_celsius_tenths(200);
-const SECOND: Micros = Micros::from_millis(1000);
 /// Time for which a line is watched: more than the window, and 11 ms less than the 60 ms after which a module may fire
 /// again.
 const LISTENS: Micros = Micros::from_millis(45);
@@ -116,29 +113,6 @@ fn start<'d, P: Instance, const N: usize>(
     machine.set_enable(true);
 }
 
-/// The distances of what stood before each sensor within the last second, in millimetres; `free` where nothing is in
-/// range, `x` where a module does not answer, `-` where nothing is known.
-struct Distances<'w> {
-    watch: &'w SensorWatch<SENSORS>,
-    now: Instant,
-}
-
-impl fmt::Display for Distances<'_> {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for sensor in 0..SENSORS as u8 {
-            match self.watch.state(sensor, self.now) {
-                Ok(SensorState::Obstacle { t_echo, age }) if age < SECOND => {
-                    write!(f, "{:6}", SOUND.distance_mm(t_echo))?;
-                }
-                Ok(SensorState::Clear { age }) if age < SECOND => f.write_str("  free")?,
-                Ok(SensorState::Unanswered { .. }) => f.write_str("     x")?,
-                _ => f.write_str("     -")?,
-            }
-        }
-        Ok(())
-    }
-}
-
 #[embassy_executor::main]
 async fn main(spawner: Spawner) {
     let p = embassy_rp::init(Default::default());
@@ -175,17 +149,18 @@ async fn main(spawner: Spawner) {
         lines: [PioLine::new(LISTENS); SENSORS],
     };
 
-    // Robots that meet need seeds of their own: this one is drawn at each start, and not 0.
-    let turns = TurnSettings::new(RoscRng.next_u32() | 1);
-    let window = RingConfig::new().with_window(Micros::from_millis(37));
-    let ring = FlowRing::<SENSORS>::flow(SENSORS, turns, BeliefSettings::DEFAULT, window, now());
-    let ring = ring.expect("eight modules with such a window");
-    let mut ring = CaptureRing::new(ring, Settings::default(), modules).expect("modules rest long enough");
-    let mut watch = SensorWatch::<SENSORS>::new(0, now());
-    let mut said = now();
+    let config = RingConfig::new().with_window(Micros::from_millis(40));
+    let ring = Ring::new(&RING, config, now()).expect("the table was verified for such a window");
+    let mut ring = CaptureRing::new(ring, Settings::default(), modules).expect("the table lets modules rest");
     loop {
         while let Some(event) = ring.poll(now()) {
-            watch.observe(&event, now());
+            let RingEvent::Reading(reading) = event else { continue };
+            match (reading.kind, reading.t_echo.map(|t_echo| SOUND.distance_mm(t_echo))) {
+                (ReadingKind::Accepted, Some(mm)) => log::info!("module {}: {mm} mm", reading.sensor + 1),
+                (ReadingKind::Clear, _) => log::info!("module {}: free", reading.sensor + 1),
+                (ReadingKind::Unanswered, _) => log::info!("module {} does not answer", reading.sensor + 1),
+                _ => {}
+            }
         }
         let now = now();
         if now.since(said) >= SECOND {

@@ -211,8 +211,8 @@ impl Asked {
         ensure!(readings > 20.0 * counts.len() as f64, "{readings} readings of {} modules:\n{said}", counts.len());
         let worst = counts.iter().map(|[readings, accepted, _]| 100.0 * accepted / readings.max(1.0)).reduce(f64::min);
         Ok(Figures {
-            accepted: 100.0 * accepted / readings,
-            worst: worst.context("no modules")?,
+            accepted: (100.0 * accepted / readings).min(100.0),
+            worst: worst.context("no modules")?.min(100.0),
             wrong: 100.0 * wrong / accepted.max(1.0),
             says_so: said.contains("too slow"),
             ..Figures::default()

@@ -1796,10 +1796,15 @@ uint8_t eeruf_hc_sr04_health(const EerufHcSr04 *modules, uint8_t sensor) {
 
 void eeruf_pace_event(EerufPace *pace, const EerufEvent *event) {
     const uint32_t bit = (uint32_t)1 << (event->sensor & 31), heard = pace->heard & ~bit;
+    const EerufReading *reading = &event->u.reading;
     if (event->kind != EERUF_EVENT_READING) return;
-    /* What a late reading comes before is compared with nothing. */
-    if (event->u.reading.kind != EERUF_READING_LATE) pace->twice |= pace->heard & bit;
-    pace->heard = event->u.reading.kind != EERUF_READING_LATE ? heard | bit : heard;
+    /* What a reading without a time comes before is compared with nothing. One from beyond the window has its time. */
+    if (reading->kind != EERUF_READING_LATE || reading->t_echo_us != EERUF_NO_ECHO) {
+        pace->twice |= pace->heard & bit;
+        pace->heard = heard | bit;
+    } else {
+        pace->heard = heard;
+    }
 }
 
 bool eeruf_pace_too_slow(EerufPace *pace, const EerufRing *ring, uint32_t now_us) {

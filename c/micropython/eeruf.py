@@ -701,7 +701,7 @@ class HcSr04FlowRing:
             self._trigger(event[1])
         if not event or event[0] != READING:
             return None
-        heard, bit, late = self._heard, 1 << event[SENSOR], event[KIND] == LATE
+        heard, bit, late = self._heard, 1 << event[SENSOR], event[KIND] == LATE and event[T_ECHO] is None
         self._twice |= 0 if late else heard & bit
         self._heard = heard & ~bit if late else heard | bit
         return event

@@ -27,8 +27,9 @@ impl Pace {
                 let bit = 1_u64.checked_shl(reading.sensor.into()).unwrap_or(0);
                 let heard = self.heard & bit;
                 self.heard &= !bit;
-                // What a late reading comes before is compared with nothing.
-                if reading.kind != ReadingKind::Late {
+                // What a reading without a time comes before is compared with nothing. One from beyond the window has
+                // its time.
+                if reading.kind != ReadingKind::Late || reading.t_echo.is_some() {
                     self.twice |= heard;
                     self.heard |= bit;
                 }

@@ -1795,16 +1795,16 @@ uint8_t eeruf_hc_sr04_health(const EerufHcSr04 *modules, uint8_t sensor) {
 }
 
 void eeruf_pace_event(EerufPace *pace, const EerufEvent *event) {
-    const uint32_t bit = (uint32_t)1 << (event->sensor & 31), heard = pace->heard & ~bit;
+    const uint32_t bit = (uint32_t)1 << (event->sensor & 31);
+    /* What a reading without a time comes before is compared with nothing. One from beyond the window has its time. */
     const EerufReading *reading = &event->u.reading;
     if (event->kind != EERUF_EVENT_READING) return;
-    /* What a reading without a time comes before is compared with nothing. One from beyond the window has its time. */
-    if (reading->kind != EERUF_READING_LATE || reading->t_echo_us != EERUF_NO_ECHO) {
-        pace->twice |= pace->heard & bit;
-        pace->heard = heard | bit;
-    } else {
-        pace->heard = heard;
+    if (reading->kind == EERUF_READING_LATE && reading->t_echo_us == EERUF_NO_ECHO) {
+        pace->heard &= ~bit;
+        return;
     }
+    pace->twice |= pace->heard & bit;
+    pace->heard |= bit;
 }
 
 bool eeruf_pace_too_slow(EerufPace *pace, const EerufRing *ring, uint32_t now_us) {
@@ -1819,7 +1819,6 @@ bool eeruf_pace_too_slow(EerufPace *pace, const EerufRing *ring, uint32_t now_us
     return slow && !ring->paused;
 }
 
-#if EERUF_WITH_FLOW
 /* ---- Flow: the rules are in docs/explanation/flow.md ---- */
 
 #define QUIET_US 4u /* the unit of quiet */

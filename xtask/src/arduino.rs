@@ -59,9 +59,6 @@ impl Example {
 
 const ALL: [u8; 16] = [2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17];
 
-/// `examples/uno`, which is in Rust: wired as Ring8.
-const IN_RUST: Example = Example::eight("examples/uno", true);
-
 const EXAMPLES: [Example; 6] = [
     Example::eight("Ring8", false),
     Example::one_pin("Flow12", 12, true),
@@ -95,7 +92,6 @@ pub(crate) fn arduino(plan: &Plan, steps: &mut Steps) {
         return;
     }
     steps.step("tables of the Arduino library", || tables::check(plan.write));
-    steps.step("tables of the examples", crate::examples::tables);
     steps.step("Arduino library", || pack().and_then(|library| examples(&library, plan.short)));
     steps.step("Arduino library for its other cores", || cores(&library));
     steps.step("pace of sketches", || pace::run(&library));
@@ -160,11 +156,6 @@ fn examples(library: &Path, short: bool) -> Result<()> {
             println!("| {} | {} | {} | {} |", example.name, sketch.flash, sketch.ram, heard.row());
         }
     }
-    let elf = crate::examples::uno()?;
-    let (flash, ram) = build::size(&elf)?;
-    let heard = world::hear(&world, &elf, &IN_RUST, seconds, false)?;
-    heard.is_plausible(&IN_RUST)?;
-    println!("| `{}`, in Rust | {flash} | {ram} | {} |", IN_RUST.name, heard.row());
     let sketch = build::example(library, "Survey")?;
     newping::builds(library)?;
     if !short {

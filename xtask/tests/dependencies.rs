@@ -23,7 +23,7 @@ fn quoted(text: &str) -> BTreeSet<&str> {
 /// The direct dependencies that are not our own, of all kinds, in all workspaces, and who has them.
 fn dependencies() -> BTreeMap<String, BTreeSet<String>> {
     let mut found = BTreeMap::<_, BTreeSet<_>>::new();
-    let examples = ["esp32-c3", "nucleo-f401", "pico", "uno"].map(|name| format!("examples/{name}"));
+    let examples = ["esp32-c3", "nucleo-f401", "pico"].map(|name| format!("examples/{name}"));
     for folder in [".", "firmware", "fuzz"].map(str::to_owned).into_iter().chain(examples) {
         let manifest = root().join(folder).join("Cargo.toml");
         let metadata = MetadataCommand::new().manifest_path(manifest).no_deps().exec().unwrap();

@@ -201,8 +201,10 @@ fn check(listing: &Listing, folder: &Path) -> Vec<String> {
         }
         // The project stands beside the clone.
         "yaml" => {
-            let path = text.split("path: ../../eeruf/").nth(1).and_then(|rest| rest.split(' ').next());
-            let is_there = path.is_some_and(|path| root().join(path).join("idf_component.yml").exists());
+            // A component of ESP-IDF, or ESPHome's folder of components, whose test reads such a file.
+            let path = text.split("path: ").nth(1).and_then(|rest| rest.split([' ', '\n']).next()).unwrap_or_default();
+            let path = root().join(path.trim_start_matches("../../eeruf/"));
+            let is_there = ["idf_component.yml", "eeruf/__init__.py"].iter().any(|file| path.join(file).exists());
             (!is_there).then(|| format!("no component at its path:\n{text}"))
         }
         "html" => {

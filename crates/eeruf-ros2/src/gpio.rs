@@ -186,7 +186,7 @@ impl Known {
     fn frame(&mut self, message: Message) -> FromLine {
         let sequence = self.sequence;
         self.sequence = sequence.wrapping_add(1);
-        FromLine::Frame(Ok(Received { sequence, message }), nanoseconds())
+        FromLine::Frame(Ok(Received { sequence, message, of_hopping: false }), nanoseconds())
     }
 
     fn message(

@@ -168,7 +168,10 @@ impl EerufNode {
     }
 
     fn frame(&mut self, received: Received, at_ns: i64) -> Result<(), String> {
-        let Received { sequence, message } = received;
+        let Received { sequence, message, of_hopping } = received;
+        if of_hopping {
+            self.say_once("the board's ring hops in time, of an earlier version; how it weighs readings is ignored");
+        }
         if let Some(last) = self.sequence.replace(sequence) {
             // A board that restarted begins with 0.
             let missing = sequence.wrapping_sub(last).wrapping_sub(1);

@@ -9,7 +9,7 @@ use eeruf_core::{Instant, MAX_SENSORS, Micros, ReadingKind, judge::Explanation};
 
 use crate::encode::{LONGEST_CLOCK, LONGEST_FRAME};
 use crate::firing::FiringMessage;
-use crate::{BY_HISTORY, BY_NOTHING, FIRING, HELLO, NO_ECHO, OLDEST_VERSION, PERIOD, VERSION};
+use crate::{BY_HISTORY, BY_NOTHING, FIRING, HELLO, NO_ECHO, OF_HOPPING, OLDEST_VERSION, PERIOD, VERSION};
 
 const CRC: Crc<u16, Table<1>> = Crc::<u16, Table<1>>::new(&CRC_16_IBM_3740);
 
@@ -38,6 +38,9 @@ pub enum Message {
     },
 }
 
+/// Number of bytes by which a firing of a ring that hopped is longer: how the ring weighed the reading.
+const HOW: usize = 6;
+
 /// A message and its frame's number.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Received {
@@ -45,6 +48,9 @@ pub struct Received {
     pub sequence: u16,
     /// Contents of the frame.
     pub message: Message,
+    /// True for a firing of a ring that hopped, as boards of earlier versions send it: how the ring weighed the reading
+    /// is ignored.
+    pub of_hopping: bool,
 }
 
 /// Reason why bytes between two zeros are no frame.
@@ -128,11 +134,11 @@ fn decode(encoded: &mut [u8]) -> Result<Received, FrameError> {
     let sequence = u16::from_le_bytes(fields.take()?);
     let message = match first & 0xF {
         HELLO => hello(fields)?,
-        FIRING => firing(fields, version)?,
+        kind @ (FIRING | OF_HOPPING) => firing(fields, version, kind == OF_HOPPING)?,
         PERIOD => period(fields)?,
         _ => return Err(FrameError::Content("kind")),
     };
-    Ok(Received { sequence, message })
+    Ok(Received { sequence, message, of_hopping: first & 0xF == OF_HOPPING })
 }
 
 fn hello(mut fields: Fields<'_>) -> Result<Message, FrameError> {
@@ -146,7 +152,7 @@ fn hello(mut fields: Fields<'_>) -> Result<Message, FrameError> {
     Ok(Message::Hello { sensors, clock: clock.ok_or(FrameError::Content("clock"))?.into() })
 }
 
-fn firing(mut fields: Fields<'_>, version: u8) -> Result<Message, FrameError> {
+fn firing(mut fields: Fields<'_>, version: u8, of_hopping: bool) -> Result<Message, FrameError> {
     let [sensor, phase, kind] = fields.take()?;
     if usize::from(sensor) >= MAX_SENSORS {
         return Err(FrameError::Content("sensor"));
@@ -162,6 +168,9 @@ fn firing(mut fields: Fields<'_>, version: u8) -> Result<Message, FrameError> {
         age: Micros::new(u32::from_le_bytes(fields.take()?)),
         explained_by: if version == OLDEST_VERSION { None } else { explanation(&mut fields)? },
     };
+    if of_hopping {
+        fields.take::<HOW>()?;
+    }
     fields.end()?;
     Ok(Message::Firing(firing))
 }

@@ -51,6 +51,9 @@ const OLDEST_VERSION: u8 = 1;
 const HELLO: u8 = 0;
 const FIRING: u8 = 1;
 const PERIOD: u8 = 2;
+/// A firing of a ring that hopped, which boards of earlier versions send.
+#[cfg(feature = "decode")]
+const OF_HOPPING: u8 = 3;
 
 /// The bytes beside the sensors, from 0, that explain a reading.
 const BY_HISTORY: u8 = 0xFE;

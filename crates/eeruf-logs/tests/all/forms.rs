@@ -253,7 +253,7 @@ fn damaged_line_among_messages_of_a_board_is_damage() {
     let more = "front: 43 cm\nload: 7 cm\nfront: 4\u{0} cm\nfr\u{fffd}nt: 41 cm\nfront: 42 cm\n";
     let (found, _, report) = said(format!("{start}{lines}{start}{more}").as_bytes(), &Options::default());
     assert_eq!((found.as_str(), report.damage.len()), ("front: 0.4 0.42 0.43 0.42", 5), "{:?}", report.damage);
-    assert!(report.skipped.iter().any(|skipped| skipped.why.starts_with("6 lines that a board")), "{report:?}");
+    assert!(report.skipped.iter().any(|skipped| skipped.why.starts_with("6 of its lines: a board")), "{report:?}");
 }
 
 #[test]

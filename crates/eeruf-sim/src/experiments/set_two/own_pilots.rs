@@ -1,6 +1,8 @@
-//! The pilots that `cargo lab tune` found, one for each method. It prints this file: do not edit by hand.
+//! The pilots that `cargo lab tune` found, one for each method; it prints this file: change none by hand.
 //!
-//! 48 pilots on courses 0 to 7, the best 12 on courses 8 to 31, the best 4 on courses 32 to 103. The best is taken.
+//! 48 pilots on courses 0 to 7,
+//! the best 12 on courses 8 to 31,
+//! the best 4 on courses 32 to 103. The best is taken.
 //! Every course is driven alone, with a second robot behind, and with one ahead.
 
 use crate::methods::Method;

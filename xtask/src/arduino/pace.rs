@@ -10,7 +10,7 @@ use super::{EXAMPLES, Example, world};
 use crate::steps::edited;
 
 /// Sketches that read by a class.
-const SKETCHES: [&str; 6] = ["Ring8", "States4", "FromNewPing", "SerialRing8", "Flow12", "Strip"];
+const SKETCHES: [&str; 5] = ["Ring8", "States4", "FromNewPing", "Flow12", "Strip"];
 const SECONDS: u32 = 3;
 /// Words in each sketch before `X ms`.
 const STATED: &str = "One read() takes up to ";

@@ -178,7 +178,8 @@ impl Asked {
             Some(_) if polled || self.options.contains("two-phases") || says_so => (0.0, 0.0),
             Some(_) => (70.0, 70.0),
         };
-        let foreign = in_alcove.map_or(0.0, |(_, foreign)| foreign);
+        // In the alcove those of a group hear one another, wherefore groups are not recommended for it.
+        let foreign = in_alcove.filter(|_| !self.options.contains("groups")).map_or(0.0, |(_, foreign)| foreign);
         let mut row =
             format!("{accepted:.1} % | {worst:.1} %{} | {wrong:.1} %", if says_so { ", says so" } else { "" });
         row += &in_alcove.map_or(" | not run".to_owned(), |(stack, wrong)| format!(" | {stack}, {wrong:.1} %"));

@@ -1,6 +1,5 @@
 // Eight HC-SR04 modules whose firings go to a computer as frames, for `eeruf-ros2 --port` and `eeruf diagnose`.
 // Pins as in Ring8; by flow. A frame has 28 bytes: 500,000 baud, which an Uno makes exactly, are enough for all.
-// One read() takes up to 1.9 ms on an Uno.
 #include <EerufFlow.h>
 #include <eeruf_serial.h>
 

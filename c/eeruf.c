@@ -1796,7 +1796,7 @@ uint8_t eeruf_hc_sr04_health(const EerufHcSr04 *modules, uint8_t sensor) {
 
 void eeruf_pace_event(EerufPace *pace, const EerufEvent *event) {
     const uint32_t bit = (uint32_t)1 << (event->sensor & 31);
-    /* What a reading without a time comes before is compared with nothing. One from beyond the window has its time. */
+    /* After a reading without a time nothing is compared. One from beyond the window has its time. */
     const EerufReading *reading = &event->u.reading;
     if (event->kind != EERUF_EVENT_READING) return;
     if (reading->kind == EERUF_READING_LATE && reading->t_echo_us == EERUF_NO_ECHO) {

@@ -118,7 +118,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     };
     let surveyed = watched(&log, &settings(args), Watch::new());
     let found = found(args, file, &log, &surveyed, truth.as_ref());
-    // What a survey found until Ctrl-C is no ring.
+    // A survey stopped by Ctrl-C writes no ring file: pairs may be missing.
     if let Some(ring) = args.ring.as_ref().filter(|_| !was_stopped()) {
         let terms = RingTerms {
             t_delta_us: args.t_delta_us,

@@ -131,9 +131,7 @@ impl Both {
         };
         chosen.under.iter().zip(&measured.under).filter_map(of).collect()
     }
-}
 
-impl Both {
     /// A kind of way under each condition.
     fn conditions(&self, family: Family) -> Vec<UnderCondition> {
         let of = |(best, under): (BestWay, &Under)| {

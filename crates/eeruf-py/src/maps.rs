@@ -8,11 +8,10 @@ use pyo3::prelude::*;
 use crate::{
     arguments::{number, shown, wrong},
     errors::{EerufError, Raise, warn},
-    scene::Scene,
 };
 
-/// The scene of a map, for [`Scene::read_map`].
-pub(crate) fn read_map(path: &Bound<'_, PyAny>, tolerance_m: Option<&Bound<'_, PyAny>>) -> PyResult<Scene> {
+/// The walls of a map as parts of a world without robots.
+pub(crate) fn read_map(path: &Bound<'_, PyAny>, tolerance_m: Option<&Bound<'_, PyAny>>) -> PyResult<WorldParts> {
     let py = path.py();
     let path: PathBuf = path.extract().map_err(|_| wrong("path", shown(path), "the path of a map's YAML file"))?;
     let tolerance_m = tolerance_m.map(|value| number("tolerance_m", value, 0.0..=1000.0)).transpose()?;
@@ -23,8 +22,5 @@ pub(crate) fn read_map(path: &Bound<'_, PyAny>, tolerance_m: Option<&Bound<'_, P
     let walls = grid.walls(tolerance_m.unwrap_or(grid.default_tolerance_m()));
     let scene = eeruf_sim::Scene::new(walls, vec![], Air::default()).map_err(Raise::raise)?;
     let (noise, physics) = (Noise::default(), Physics::DEFAULT);
-    Scene::of(
-        WorldParts { scene, robots: vec![], noise, physics, max_order: DEFAULT_ORDER, seed: 0, faults: vec![] },
-        vec![],
-    )
+    Ok(WorldParts { scene, robots: vec![], noise, physics, max_order: DEFAULT_ORDER, seed: 0, faults: vec![] })
 }

@@ -275,7 +275,7 @@ impl Scene {
     #[staticmethod]
     #[pyo3(signature = (path, *, tolerance_m=None))]
     fn read_map(path: &Bound<'_, PyAny>, tolerance_m: Option<&Bound<'_, PyAny>>) -> PyResult<Self> {
-        crate::maps::read_map(path, tolerance_m)
+        Self::of(crate::maps::read_map(path, tolerance_m)?, vec![])
     }
 
     /// A scene out of the text of a scene file, as :meth:`to_toml` writes it.

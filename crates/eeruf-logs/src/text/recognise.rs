@@ -242,7 +242,7 @@ impl Plan {
             && options.table.columns.is_empty()
             && values.iter().any(|(_, row)| row[names.len()..].iter().any(|text| !text.is_empty()))
         {
-            // The line's beginning is cut off, or its end: nobody knows which.
+            // Either the line's beginning or its end is missing.
             names.clear();
             self.has_names = false;
             (self.header, self.rows_from) = (None, first_number);

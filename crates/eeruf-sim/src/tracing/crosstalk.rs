@@ -174,7 +174,7 @@ impl CrosstalkMatrix {
         tracer.frequency_hz = sending.frequency_hz;
         tracer.burst_cycles = sending.cycles;
         let in_room = scene.room().is_some();
-        // What is certainly too faint is so however loud a panel makes it.
+        // Paths that stay too faint even with the gain of a panel are left out.
         let (patterns, faintest, loss_per_m) =
             ([departing, arriving], floor / tracer.loudest(), tracer.loss_per_m(air));
         let audibility = match &mut self.audibility {

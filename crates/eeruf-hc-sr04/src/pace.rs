@@ -27,8 +27,8 @@ impl Pace {
                 let bit = 1_u64.checked_shl(reading.sensor.into()).unwrap_or(0);
                 let heard = self.heard & bit;
                 self.heard &= !bit;
-                // A reading without a time leaves nothing to compare the next one with. One from beyond the window has its
-                // time.
+                // A reading without a time leaves nothing to compare the next one with. One from beyond the window
+                // has its time.
                 if reading.kind != ReadingKind::Late || reading.t_echo.is_some() {
                     self.twice |= heard;
                     self.heard |= bit;

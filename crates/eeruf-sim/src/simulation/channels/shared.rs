@@ -92,7 +92,8 @@ mod tests {
         // Whoever asks next finds what was found.
         let known = shared.found.lock().unwrap().len();
         assert!(known > 40, "{known}");
-        assert_eq!(read(Some(&shared)), carried);
+        let bits = |read: Vec<[f64; 2]>| read.into_iter().map(|pair| pair.map(f64::to_bits)).collect::<Vec<_>>();
+        assert_eq!(bits(read(Some(&shared))), bits(carried));
         assert_eq!(shared.found.lock().unwrap().len(), known);
     }
 }

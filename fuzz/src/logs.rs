@@ -70,10 +70,8 @@ pub fn tables(bytes: &[u8]) {
     let header = bytes.split(|&byte| byte == b'\n').next().unwrap_or_default();
     let names: Vec<String> =
         String::from_utf8_lossy(header).split(',').map(|name| name.trim().trim_matches('"').to_owned()).collect();
-    let units = [RangeUnit::M, RangeUnit::Cm, RangeUnit::Mm, RangeUnit::In, RangeUnit::Ft, RangeUnit::Us];
-    let times = [TimeUnit::S, TimeUnit::Ms, TimeUnit::Us, TimeUnit::Ns];
     let length = bytes.len();
-    let (range_unit, time_unit) = (Some(units[length % 6]), Some(times[length / 6 % 4]));
+    let (range_unit, time_unit) = (Some(RangeUnit::NAMES[length % 7].1), Some(TimeUnit::NAMES[length / 7 % 4].1));
     let wide = Table { range_unit, time_unit, ..Table::default() };
     let timed = Table { time: names.first().cloned(), ..wide.clone() };
     let long = match &names[..] {

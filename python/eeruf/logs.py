@@ -52,7 +52,7 @@ if TYPE_CHECKING:
         time: str | None
         time_unit: Literal["s", "ms", "us", "ns"] | None
         ranges: Iterable[str]
-        range_unit: Literal["m", "cm", "mm", "in", "ft", "us"] | None
+        range_unit: Literal["m", "cm", "mm", "in", "ft", "ms", "us"] | None
         sensor: str | None
         speed_of_sound: float
         no_echo_m: float
@@ -382,7 +382,7 @@ def read_log(
     time: str | None = None,
     time_unit: Literal["s", "ms", "us", "ns"] | None = None,
     ranges: Iterable[str] = (),
-    range_unit: Literal["m", "cm", "mm", "in", "ft", "us"] | None = None,
+    range_unit: Literal["m", "cm", "mm", "in", "ft", "ms", "us"] | None = None,
     sensor: str | None = None,
     speed_of_sound: float = 343.2,
     no_echo_m: float = 5.0,

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use eeruf_files::FileError;
 use eeruf_logs::{FieldChoice, LogReading, Options, RangeUnit, Report, Table, TimeUnit, read_log};
 
@@ -31,14 +32,14 @@ pub(crate) struct LogArgs {
     #[arg(long, value_name = "COLUMN")]
     time: Option<String>,
     /// Text: the unit of the time; by default guessed
-    #[arg(long, hide_short_help = true, value_name = "UNIT")]
-    time_unit: Option<TimeName>,
+    #[arg(long, hide_short_help = true, value_name = "UNIT", value_parser = unit(&TimeUnit::NAMES))]
+    time_unit: Option<TimeUnit>,
     /// Text: a column with ranges; may be given several times; by default guessed
     #[arg(long, value_name = "COLUMN")]
     range: Vec<String>,
-    /// Text: the unit of the ranges; us are microseconds from firing to echo; by default guessed
-    #[arg(long, hide_short_help = true, value_name = "UNIT")]
-    range_unit: Option<RangeName>,
+    /// Text: the unit of the ranges; ms and us are milli- and microseconds from firing to echo; by default guessed
+    #[arg(long, hide_short_help = true, value_name = "UNIT", value_parser = unit(&RangeUnit::NAMES))]
+    range_unit: Option<RangeUnit>,
     /// Text: the column that says whose reading a row is; needs one column with ranges; by default
     /// guessed
     #[arg(long, hide_short_help = true, value_name = "COLUMN")]
@@ -52,46 +53,10 @@ pub(crate) struct LogArgs {
     field: Vec<String>,
 }
 
-#[derive(Clone, Copy, clap::ValueEnum)]
-enum TimeName {
-    S,
-    Ms,
-    Us,
-    Ns,
-}
-
-#[derive(Clone, Copy, clap::ValueEnum)]
-enum RangeName {
-    M,
-    Cm,
-    Mm,
-    In,
-    Ft,
-    Us,
-}
-
-impl From<RangeName> for RangeUnit {
-    fn from(name: RangeName) -> Self {
-        match name {
-            RangeName::M => Self::M,
-            RangeName::Cm => Self::Cm,
-            RangeName::Mm => Self::Mm,
-            RangeName::In => Self::In,
-            RangeName::Ft => Self::Ft,
-            RangeName::Us => Self::Us,
-        }
-    }
-}
-
-impl From<TimeName> for TimeUnit {
-    fn from(name: TimeName) -> Self {
-        match name {
-            TimeName::S => Self::S,
-            TimeName::Ms => Self::Ms,
-            TimeName::Us => Self::Us,
-            TimeName::Ns => Self::Ns,
-        }
-    }
+/// Reads the name of a unit.
+fn unit<T: Copy + Send + Sync>(known: &'static [(&'static str, T)]) -> impl TypedValueParser<Value = T> {
+    let of = |name: String| known.iter().find(|unit| unit.0 == name).expect("one of the possible values").1;
+    PossibleValuesParser::new(known.iter().map(|unit| unit.0)).map(of)
 }
 
 pub(crate) fn positive(text: &str) -> Result<f64, String> {
@@ -105,20 +70,18 @@ impl LogArgs {
     /// Returns the options in the reader's form.
     pub(crate) fn options(&self) -> Result<Options, InputError> {
         let field = |parts: &[String]| -> Result<FieldChoice, InputError> {
-            let unit = <RangeName as clap::ValueEnum>::from_str(&parts[2], true).map_err(|_| {
-                InputError::new(
-                    "--field",
-                    format!("{}: unit `{}`; expected m, cm, mm, in, ft or us", parts[0], parts[2]),
-                )
-            })?;
-            Ok(FieldChoice { topic: parts[0].clone(), path: parts[1].clone(), unit: unit.into() })
+            let unit = RangeUnit::NAMES.iter().find(|unit| unit.0.eq_ignore_ascii_case(&parts[2]));
+            let known = RangeUnit::NAMES.map(|unit| unit.0).join(", ");
+            let wrong = || format!("{}: unit `{}`; expected one of {known}", parts[0], parts[2]);
+            let unit = unit.ok_or_else(|| InputError::new("--field", wrong()))?.1;
+            Ok(FieldChoice { topic: parts[0].clone(), path: parts[1].clone(), unit })
         };
         let table = Table {
             columns: self.columns.clone(),
             ranges: self.range.clone(),
-            range_unit: self.range_unit.map(RangeUnit::from),
+            range_unit: self.range_unit,
             time: self.time.clone(),
-            time_unit: self.time_unit.map(TimeUnit::from),
+            time_unit: self.time_unit,
             sensor: self.sensor.clone(),
         };
         Ok(Options {

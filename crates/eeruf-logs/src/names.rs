@@ -56,6 +56,11 @@ const LIMITS: &str = "min max minimum maximum lower upper lower_limit upper_limi
 const UNITS: &str = "cm mm inch inches meters metres centimeters centimetres millimeters millimetres";
 const FILTERS: &str = "filtered filter smoothed smooth avg average averaged mean median kalman ema sma lowpass lpf";
 
+/// Units that no range here has, at the end of a name.
+const UNREAD_UNITS: &str = "v mv yd yds dm km nm pct percent px";
+/// Ends of names of source files, which loggers write before a line's number.
+const SOURCES: &str = "py ino c cc cpp h hpp rs js ts java go";
+
 /// Returns true if a list, separated by spaces, has this word.
 fn is_in(list: &str, word: &str) -> bool {
     list.split(' ').any(|own| own == word)
@@ -90,6 +95,9 @@ pub(crate) fn meaning(name: &str) -> Meaning {
     {
         return Meaning::Range;
     }
+    if name.rsplit_once('.').is_some_and(|(_, end)| is_in(SOURCES, end)) {
+        return Meaning::Other;
+    }
     let last = name.rsplit_once('.').map_or(Meaning::Vague, |(_, last)| meaning_of(last));
     if last == Meaning::Vague { meaning_of(name) } else { last }
 }
@@ -101,6 +109,9 @@ fn meaning_of(name: &str) -> Meaning {
     // An address on a bus.
     if whole.starts_with("0x") {
         return Meaning::Vague;
+    }
+    if words.len() > 1 && is_in(UNREAD_UNITS, &words[words.len() - 1]) {
+        return Meaning::Other;
     }
     let is_echo = has(ECHOES) || whole == "time_of_flight";
     if has("field") && has("view") || has("angle increment") {
@@ -144,15 +155,19 @@ fn is_unit(word: &str) -> bool {
 pub(crate) fn range_unit(name: &str) -> Option<(RangeUnit, bool)> {
     let words = words(name);
     let last = words.last()?;
+    let is_echo = words.iter().any(|word| is_in(ECHOES, word));
+    if is_echo && time_word(last) == Some(TimeUnit::Ms) {
+        return Some((RangeUnit::Ms, true));
+    }
     if let Some(unit) = value::unit(last).filter(|_| words.len() > 1 || is_in(UNITS, last)) {
-        return Some((unit, unit != RangeUnit::Us || words.iter().any(|word| is_in(ECHOES, word))));
+        return Some((unit, unit != RangeUnit::Us || is_echo));
     }
     // A number after it, as in `cm2`.
     let unit = words.iter().rev().nth(1).and_then(|word| value::unit(word));
     if let Some(unit @ (RangeUnit::Cm | RangeUnit::Mm)) = unit {
         return Some((unit, true));
     }
-    words.iter().any(|word| is_in(ECHOES, word)).then_some((RangeUnit::Us, false))
+    is_echo.then_some((RangeUnit::Us, false))
 }
 
 fn time_word(word: &str) -> Option<TimeUnit> {
@@ -188,6 +203,15 @@ pub(crate) fn quantity(name: &str) -> String {
 /// Returns true for the name of a place on a robot.
 pub(crate) fn is_place(name: &str) -> bool {
     words(name).iter().any(|word| is_in(PLACES, word))
+}
+
+/// Returns true for a remark beside a value that says whose it is: `sensor 3`, `#3`, `front left`.
+pub(crate) fn is_owner(remark: &str) -> bool {
+    let words = words(remark);
+    let is_numbered = words.last().is_some_and(|word| word.bytes().all(|byte| byte.is_ascii_digit()));
+    let is_called = |word: &String| is_in(SENSORS, word) || is_in("us hc sr nr no", word);
+    let is_place = !words.is_empty() && words.iter().all(|word| is_in(PLACES, word));
+    is_place || is_numbered && (remark.starts_with('#') || words.first().is_some_and(is_called))
 }
 
 /// Returns true for the name of filtered readings.
@@ -250,6 +274,10 @@ mod tests {
             ("field.header.frame_id", Meaning::Sensor),
             ("battery_v", Meaning::Other),
             ("ir_distance", Meaning::Other),
+            ("front_V", Meaning::Other),
+            ("range_yd", Meaning::Other),
+            ("distance [dm]", Meaning::Other),
+            ("sonar.py", Meaning::Other),
             ("sensor", Meaning::Sensor),
             ("Sensor 1", Meaning::Vague),
             ("distance_cm", Meaning::Range),
@@ -273,6 +301,7 @@ mod tests {
         assert_eq!(unit("Left [mm]"), Some(RangeUnit::Mm));
         assert_eq!(unit("distanceCm"), Some(RangeUnit::Cm));
         assert_eq!(unit("pulse"), Some(RangeUnit::Us));
+        assert_eq!(unit("echo_left_ms"), Some(RangeUnit::Ms));
         assert_eq!(range_unit("left_us"), Some((RangeUnit::Us, false)));
         assert_eq!(unit("US1"), None);
         assert_eq!(unit("left"), None);

@@ -124,6 +124,8 @@ pub enum RangeUnit {
     In,
     /// Feet.
     Ft,
+    /// Milliseconds of round trip from firing to echo.
+    Ms,
     /// Microseconds of round trip from firing to echo.
     Us,
 }
@@ -143,6 +145,17 @@ pub enum TimeUnit {
 }
 
 impl RangeUnit {
+    /// Units by the names that options take.
+    pub const NAMES: [(&str, Self); 7] = [
+        ("m", Self::M),
+        ("cm", Self::Cm),
+        ("mm", Self::Mm),
+        ("in", Self::In),
+        ("ft", Self::Ft),
+        ("ms", Self::Ms),
+        ("us", Self::Us),
+    ];
+
     /// The unit in metres.
     pub(crate) fn metres(self, speed_of_sound: f64) -> f64 {
         match self {
@@ -151,6 +164,7 @@ impl RangeUnit {
             Self::Mm => 1e-3,
             Self::In => 0.0254,
             Self::Ft => 0.3048,
+            Self::Ms => 0.5e-3 * speed_of_sound,
             Self::Us => 0.5e-6 * speed_of_sound,
         }
     }
@@ -162,12 +176,16 @@ impl RangeUnit {
             Self::Mm => "millimetres",
             Self::In => "inches",
             Self::Ft => "feet",
+            Self::Ms => "milliseconds",
             Self::Us => "microseconds",
         }
     }
 }
 
 impl TimeUnit {
+    /// Units by the names that options take.
+    pub const NAMES: [(&str, Self); 4] = [("s", Self::S), ("ms", Self::Ms), ("us", Self::Us), ("ns", Self::Ns)];
+
     pub(crate) const fn name(self) -> &'static str {
         match self {
             Self::S => "seconds",

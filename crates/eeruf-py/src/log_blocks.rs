@@ -317,15 +317,6 @@ fn read_options(given: &Bound<'_, PyDict>) -> PyResult<Options> {
             return Err(PyTypeError::new_err(message));
         }
     }
-    let times = [("s", TimeUnit::S), ("ms", TimeUnit::Ms), ("us", TimeUnit::Us), ("ns", TimeUnit::Ns)];
-    let units = [
-        ("m", RangeUnit::M),
-        ("cm", RangeUnit::Cm),
-        ("mm", RangeUnit::Mm),
-        ("in", RangeUnit::In),
-        ("ft", RangeUnit::Ft),
-        ("us", RangeUnit::Us),
-    ];
     // Not given and `None` are one.
     let get = |name: &str| given.get_item(name).map(|value| value.filter(|value| !value.is_none()));
     let texts = |name: &str, expected: &'static str| match get(name)? {
@@ -339,27 +330,30 @@ fn read_options(given: &Bound<'_, PyDict>) -> PyResult<Options> {
         table: Table {
             columns: texts("columns", "the names of columns")?,
             ranges: texts("ranges", "the names of columns")?,
-            range_unit: get("range_unit")?.map(|unit| choice("range_unit", Some(&unit), &units)).transpose()?,
+            range_unit: get("range_unit")?
+                .map(|unit| choice("range_unit", Some(&unit), &RangeUnit::NAMES))
+                .transpose()?,
             time: column("time")?,
-            time_unit: get("time_unit")?.map(|unit| choice("time_unit", Some(&unit), &times)).transpose()?,
+            time_unit: get("time_unit")?.map(|unit| choice("time_unit", Some(&unit), &TimeUnit::NAMES)).transpose()?,
             sensor: column("sensor")?,
         },
         speed_of_sound: number("speed_of_sound", standard.speed_of_sound)?,
         no_echo_m: number("no_echo_m", standard.no_echo_m)?,
         no_echo: texts("no_echo", "values that mean no echo, as texts")?,
         topics: texts("topics", "the names of topics")?,
-        fields: get("fields")?.map_or_else(|| Ok(Vec::new()), |fields| field_choices(&fields, &units))?,
+        fields: get("fields")?.map_or_else(|| Ok(Vec::new()), |fields| field_choices(&fields))?,
         judged: flag("judged", get("judged")?.as_ref(), false)?,
     })
 }
 
 /// Triples of topic, path and unit.
-fn field_choices(fields: &Bound<'_, PyAny>, units: &[(&str, RangeUnit)]) -> PyResult<Vec<FieldChoice>> {
+fn field_choices(fields: &Bound<'_, PyAny>) -> PyResult<Vec<FieldChoice>> {
     let expected = "triples of topic, field and unit, as (\"/sonars\", \"distance_mm[]\", \"mm\")";
     let field = |field: &Bound<'_, PyAny>| {
         let found: Option<(String, String, String)> = field.extract().ok();
         let (topic, path, unit) = found.ok_or_else(|| wrong("fields", shown(field), expected))?;
-        let unit = units.iter().find(|known| known.0 == unit).ok_or_else(|| wrong("fields", shown(field), expected))?.1;
+        let known = RangeUnit::NAMES.iter().find(|known| known.0 == unit);
+        let unit = known.ok_or_else(|| wrong("fields", shown(field), expected))?.1;
         Ok(FieldChoice { topic, path, unit })
     };
     items("fields", fields, expected)?.iter().map(field).collect()

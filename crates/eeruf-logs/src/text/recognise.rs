@@ -433,6 +433,7 @@ impl Plan {
             idle.for_each(|column| column.role = Role::Other);
         }
         if ranges.is_empty() && has_header {
+            self.shared_units();
             self.named_ranges_alone();
             if table.columns.is_empty() {
                 self.one_kind();
@@ -512,6 +513,19 @@ impl Plan {
             return Err(FileError::new(file, message));
         }
         Ok(())
+    }
+
+    /// Gives the unit in the cells of `e2` to `e0` and `e1`, where it is written once a line.
+    fn shared_units(&mut self) {
+        let stem = |name: &str| name.trim_end_matches(|letter: char| letter.is_ascii_digit()).to_owned();
+        let is_one = |column: &&Column| column.role == Role::Range && column.needs_unit();
+        let said = self.columns.iter().filter(is_one).map(|column| (stem(&column.name), column.has_unit_in_cells));
+        let said: BTreeMap<_, _> = said.collect();
+        for column in self.columns.iter_mut().filter(|column| column.role == Role::Range && column.units == 0) {
+            if let Some(unit) = said.get(&stem(&column.name)).filter(|_| stem(&column.name) != column.name) {
+                (column.has_unit_in_cells, column.has_length) = (*unit, true);
+            }
+        }
     }
 
     /// Removes columns that neither a name nor a unit marks as ranges, if others are marked.

@@ -235,9 +235,17 @@ pub(crate) fn keyed(line: &str) -> Option<Vec<(String, String)>> {
             text = format!("{text} {}", word.trim_end_matches([')', ']']));
             rest = &spaced[word.len()..];
         }
+        // Of whole numbers in line protocol.
+        if let Some(digits) = text.strip_suffix('i').filter(|digits| is_equal && digits.parse::<i64>().is_ok()) {
+            text.truncate(digits.len());
+        }
         // A remark, such as the same range in another unit.
+        let mut owner = "";
         if let Some((remark, after)) = rest.trim_start().strip_prefix('(').and_then(|remark| remark.split_once(')')) {
             rest = after;
+            if names::is_owner(remark) {
+                owner = remark;
+            }
             unit_at_end = value::unit(remark).map(|_| remark);
         }
         // A number before `=`, or before a value with a unit, is a sensor's; before anything else a part of a time.
@@ -246,7 +254,7 @@ pub(crate) fn keyed(line: &str) -> Option<Vec<(String, String)>> {
         if !is_named && !(is_number && (is_equal || value::with_unit(&text, true)?.1.is_some())) {
             return None;
         }
-        pairs.push((if heading.is_empty() { key.to_owned() } else { format!("{heading} {key}") }, text));
+        pairs.push((format!("{heading} {key} {owner}").trim().to_owned(), text));
     }
     // `left=342 right=1201 (mm)`
     if let Some(unit) = unit_at_end {
@@ -387,6 +395,8 @@ mod tests {
         assert_eq!(pairs("left:40,right:80"), some(&["left|40", "right|80"]));
         assert_eq!(pairs("Sensor 1: 40 cm, Sensor 2: 80cm"), some(&["Sensor 1|40 cm", "Sensor 2|80cm"]));
         assert_eq!(pairs("Ping: out of range"), some(&["Ping|out of range"]));
+        assert_eq!(pairs("Range: 40 cm (sensor 3)"), some(&["Range sensor 3|40 cm"]));
+        assert_eq!(pairs("range_mm=2157i,left=3 (in V)"), some(&["range_mm|2157", "left|3"]));
         assert_eq!(pairs("a=40,5 b=80,1"), some(&["a|40,5", "b|80,1"]));
         assert_eq!(pairs("left: "), some(&["left|"]));
         assert_eq!(pairs("0=79cm 1=119 cm"), some(&["0|79cm", "1|119 cm"]));

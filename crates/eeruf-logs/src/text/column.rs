@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::options::RangeUnit;
 
+use super::validity::are_verdicts;
 use crate::names;
 use crate::value::{self, Value};
 
@@ -132,7 +133,7 @@ impl Column {
         // A robot's mode stays for a while; sensors take turns.
         let is_state = self.distinct.len() > 1 && self.changes * 2 < rows + self.distinct.len();
         let is_name = self.texts > 0 && self.distinct.keys().all(is_name);
-        is_name && !is_state && (self.distinct.len() < rows || rows < 3)
+        is_name && !is_state && !are_verdicts(self.distinct.keys()) && (self.distinct.len() < rows || rows < 3)
     }
 
     /// Returns true for texts that occur equally often, like sensors in turn and unlike a robot's actions.

@@ -71,5 +71,9 @@ pub(crate) fn read(input: impl Read, file: &Path, options: &Options, sink: &mut 
         rows.line(&line);
     }
     rows.end(source.left_out);
+    // Columns of which no row had a reading are no sensors.
+    if sink.report.messages == 0 {
+        sink.report.sensors.clear();
+    }
     Ok(())
 }

@@ -5,6 +5,16 @@ use super::plan::{Plan, Says, Validity, guess};
 use crate::names;
 use crate::value;
 
+/// Words behind a reading that say whether it is one.
+const GOOD: [&str; 3] = ["valid", "ok", "good"];
+const BAD: [&str; 5] = ["invalid", "nok", "bad", "fail", "failed"];
+
+/// Returns true if each word says whether a reading is one, and one that it is.
+pub(super) fn are_verdicts<'a>(mut words: impl Iterator<Item = &'a String> + Clone) -> bool {
+    let is_in = |list: &[&str], word: &str| list.contains(&word.to_lowercase().as_str());
+    words.clone().any(|word| is_in(&GOOD, word)) && words.all(|word| is_in(&GOOD, word) || is_in(&BAD, word))
+}
+
 impl Validity {
     /// The range that an invalid cell means.
     pub(super) fn of(self, range: usize, text: impl Fn(usize) -> Option<String>, decimal_comma: bool) -> Option<f64> {
@@ -20,7 +30,8 @@ impl Validity {
                 _ => None,
             },
             Says::Flag => {
-                let is_bad = number == Some(0.0) || text.eq_ignore_ascii_case("false");
+                let text = text.to_lowercase();
+                let is_bad = number == Some(0.0) || text == "false" || BAD.contains(&text.as_str());
                 is_bad.then_some(f64::INFINITY)
             }
             Says::ReadingType => match number? {
@@ -50,6 +61,8 @@ fn meaning(column: &Column) -> Option<(Says, &'static str)> {
         Some((Says::ReadingType, "1 is good"))
     } else if has(&["valid", "ok", "isvalid"]) && is_flag && column.distinct.len() <= 2 {
         Some((Says::Flag, "1 or true is good"))
+    } else if are_verdicts(column.distinct.keys()) {
+        Some((Says::Flag, "each says if its row is good"))
     } else if has(&["quality"]) && whole(255.0) && column.numbers.iter().any(|&number| number > 0.0) {
         Some((Says::Quality, "0 is bad"))
     } else {

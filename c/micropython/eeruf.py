@@ -4,7 +4,6 @@ Times are microseconds, sensors are counted from 0. `FlowRing` does, event by ev
 ring; it needs no hardware. Rules: docs/explanation/flow.md. Licence: MIT OR Apache-2.0."""
 
 NOBODY, NEVER = 255, 0xFFFF  # never: the age of a sensor none of whose readings was ever accepted
-READING_NAMES = "first accepted rejected repeated no_echo clear too_early late stuck tentative ambiguous unanswered".split()
 FIRST, ACCEPTED, REJECTED, REPEATED, NO_ECHO, CLEAR, TOO_EARLY, LATE, STUCK, _, AMBIGUOUS, UNANSWERED = range(12)
 NEVER_FREE, NEEDS_ANSWER, TRUSTED = range(3)  # silence: neither free space nor a fault; a fault, UNANSWERED; free space once repeated
 HISTORY = "history"  # explains an ambiguous reading if a firing that could have been heard is forgotten
@@ -125,7 +124,7 @@ class FlowRing:
         self._long_ago, self._step_back = 1 << (clock_bits - 2), 1 << min(20, clock_bits - 4)
         self._horizon = (flow.sensors + 1) * (flow.most_us + 2 * flow.dice_us) + flow.min_refire_us
         self.report_after_us, self.silence = 0, NEVER_FREE  # a reading without echo comes no sooner; silence without a sign
-        self._known_from = self._long_before(now_us)  # firings before are not known
+        self._known_from = (now_us - self._long_ago) & self._mask  # firings before are not known
         more_us = flow.most_us - flow.least_us
         self._first = (flow.least_us + more_us // 5) // _UNIT_US
         self._up, self._down = more_us // 4 // _UNIT_US, more_us // 10 // _UNIT_US
@@ -142,12 +141,8 @@ class FlowRing:
         self._throw()
         self._decide()
 
-    def _long_before(self, now_us):
-        return (now_us - self._long_ago) & self._mask
-
     def _signed(self, us):
-        us &= self._mask
-        return us if us < self._half else us - self._mask - 1
+        return (us + self._half & self._mask) - self._half
 
     def _reached(self, now_us, deadline_us):
         return (now_us - deadline_us) & self._mask < self._half
@@ -283,12 +278,11 @@ class FlowRing:
             sensor.doubt = min(sensor.doubt + self._up, flow.most_us // _UNIT_US)
         elif ok or echo is not None and not far:
             sensor.doubt = max(sensor.doubt - self._down, self._least() // _UNIT_US)
-        if ok:
-            if echo is not None or clears:
-                sensor.conf = sensor.conf if fits else 1
-                sensor.believed_us, sensor.grown, sensor.missed = at_us, 0, 0
-        else:
+        if not ok:
             sensor.miss()
+        elif echo is not None or clears:
+            sensor.conf = sensor.conf if fits else 1
+            sensor.believed_us, sensor.grown, sensor.missed = at_us, 0, 0
         if kind == ACCEPTED:
             age = sensor.age = 0
         sensor.last_us = at_us
@@ -338,7 +332,8 @@ class FlowRing:
 
     def _advance(self, now_us, is_due):
         if not self._reached(now_us + self._step_back, self._seen):
-            self._unsee(now_us)
+            for sensor in self._sensors:
+                sensor.unsee(now_us)
         self._seen = now_us
         x, fires = self._next, is_due and self._next != NOBODY
         if fires and not self._sensors[x].listening and not self._sensors[x].can_emit:
@@ -350,9 +345,7 @@ class FlowRing:
             if self._pending == 0:
                 x = x if self._reached(now_us, self._emit_at) else NOBODY
             elif x == NOBODY or not self._sensors[x].can_emit:
-                x = 0
-                while not self._sensors[x].can_emit:
-                    x += 1
+                x = [sensor.can_emit for sensor in self._sensors].index(True)
         if x != NOBODY:
             event = self._emit(x, now_us)
             self._sensors[x].see(event[KIND], event[T_ECHO], event[EXPLAINED_BY], now_us)
@@ -439,20 +432,20 @@ class FlowRing:
         return (READING, x, 0, period, kind, echo, previous, age, explained_by)
 
     def _end_period(self, now_us):
-        event = (PERIOD, 0, self._period)
+        event, long_before = (PERIOD, 0, self._period), (now_us - self._long_ago) & self._mask
         self._place, self._ahead, self._period = 0, 0, (self._period + 1) & 0xFFFFFFFF
         for sensor in self._sensors:  # those that fired ahead have had their turn; the clock must not come round to the others
             sensor.ahead = False
             sensor.has_fired = sensor.has_fired and (now_us - sensor.fired_us) & self._mask <= self._half >> 2
             if self._is_long_ago(sensor.firings[0], now_us):
-                sensor.firings = [self._long_before(now_us)] * 3
+                sensor.firings = [long_before] * 3
                 sensor.forget()  # the instant that its next reading would be compared from is no longer known
                 if not sensor.listening:
                     sensor.outside, sensor.evidence = True, 0  # no edge is an echo of them
             if (now_us - sensor.seen_at) & self._mask > self._half:
                 sensor.seen_at = (now_us - self._half) & self._mask
         if self._is_long_ago(self._known_from, now_us):
-            self._known_from = self._long_before(now_us)
+            self._known_from = long_before
         if self._next == NOBODY and (now_us - self._last_fired) & self._mask >= self.flow.rest_us:
             self._last_fired = now_us  # nobody fires: rounds go on
         self._decide_from(self._due)
@@ -561,12 +554,10 @@ class FlowRing:
 
     def enable(self, x, enabled=True):
         """Enables or disables a sensor from its next turn on."""
-        sensor = self._sensors[x]
-        if not (enabled and sensor.enabled):
-            sensor.enabled = enabled
-            if enabled:
-                self.forget(x)
-            self._decide_from(self._due)
+        was_enabled, self._sensors[x].enabled = self._sensors[x].enabled, enabled
+        if enabled and not was_enabled:
+            self.forget(x)
+        self._decide_from(self._due)
 
     def pause(self, paused=True):
         """Pauses all sensors, or resumes them. Beliefs stay, and the next reading is compared with no other."""
@@ -578,9 +569,6 @@ class FlowRing:
     def restart(self, now_us):
         """Starts again from the first sensor, after a long sleep, with nothing known."""
         self._restart(now_us)
-        self._unsee(now_us)
-
-    def _unsee(self, now_us):
         self._seen = now_us
         for sensor in self._sensors:
             sensor.unsee(now_us)
@@ -590,9 +578,8 @@ class FlowRing:
         for sensor in self._sensors:  # sound from before may still be heard. A sensor that was said to fire a little later still does.
             if (sensor.firings[0] - self._known_from - 1) & self._mask < self._step_back:
                 self._known_from = sensor.firings[0]
-            sensor.drop(self._long_before(now_us))
-            # A clock that has jumped says nothing of when they fired.
-            sensor.has_fired = sensor.has_fired and (now_us - sensor.fired_us) & self._mask <= self.flow.rest_us
+            sensor.drop((now_us - self._long_ago) & self._mask)
+            sensor.has_fired = sensor.has_fired and (now_us - sensor.fired_us) & self._mask <= self.flow.rest_us  # else the clock jumped
             sensor.ahead, sensor.doubt = False, self._first
         self._oldest, self._pending, self._place, self._ahead = NOBODY, 0, 0, 0
         self._last_fired = (now_us + self.flow.most_us) & self._mask  # sound from before dies away
@@ -615,8 +602,7 @@ class HcSr04FlowRing:
         self._pin, self._time, self._one_pin = machine.Pin, time, echoes is None
         self._echoes = [machine.Pin(pin, machine.Pin.IN) for pin in echoes or pins]
         self._triggers = [machine.Pin(pin, machine.Pin.OUT, value=0) for pin in pins] if echoes else self._echoes
-        # The period of ticks_us is a power of two: from half a turn on, differences are negative.
-        bits = 1
+        bits = 1  # the period of ticks_us is a power of two: from half a turn on, differences are negative
         while time.ticks_diff(1 << bits - 1, 0) > 0:
             bits += 1
         self.ring = FlowRing(flow, time.ticks_us(), bits)
@@ -674,8 +660,7 @@ class HcSr04FlowRing:
                 self._time.sleep_us(self.RECOVERY_US)
                 self._echoes[x].init(self._pin.IN)
             return
-        if self._one_pin:
-            pin.init(self._pin.OUT, value=0)
+        pin.init(self._pin.OUT, value=0)
         pin.value(1)
         self._time.sleep_us(self.TRIGGER_US)
         pin.value(0)

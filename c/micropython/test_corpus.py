@@ -46,14 +46,10 @@ def play(ring, what, n):
         ring.measured(n[0], None if n[1] == NONE else n[1])
     elif what == "G":
         ring.silence = n[0]
-    elif what in "NY":
-        (ring.enable if what == "N" else ring.answered)(n[0], n[1] == 1)
-    elif what == "Z":
-        ring.pause(n[0] == 1)
     else:
-        calls = {"E": ring.echo, "K": ring.stuck, "F": ring.fired, "R": ring.restart, "D": ring.moving, "B": ring.forget}
-        calls.update({"I": ring.echo, "M": ring.measured})
-        calls[what](*n)
+        calls = {"E": "echo", "K": "stuck", "F": "fired", "R": "restart", "D": "moving", "B": "forget", "N": "enable"}
+        calls.update({"I": "echo", "M": "measured", "Y": "answered", "Z": "pause"})
+        getattr(ring, calls[what])(*n)
     return None, None
 
 

@@ -1,19 +1,10 @@
-"""Settings of rings, and dice for tests. What rings do stands in the corpus, and what modules do beside the faults of a line."""
+"""Settings of rings. What rings do stands in the corpus, and what modules do beside the faults of a line."""
 
 import sys
 
 from eeruf import Flow
 
 WINDOW_US = 25000
-
-
-class Dice:
-    def __init__(self, seed):
-        self.state = seed * 2654435761 % (1 << 31)
-
-    def below(self, limit):
-        self.state = (1103515245 * self.state + 12345) % (1 << 31)
-        return (self.state >> 8) % limit
 
 
 def settings():

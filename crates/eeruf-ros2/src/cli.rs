@@ -78,9 +78,7 @@ pub(crate) fn task() -> Result<Task, String> {
     if cli.print_params {
         return Ok(Task::Print(Parameters::file()));
     }
-    if let Some(name) = &cli.name {
-        ros.set_node(name);
-    }
+    ros.node = cli.name.unwrap_or(ros.node);
     let mut parameters = Parameters::default();
     for given in cli.params_file.map(Given::File).iter().chain(&ros.given) {
         match given {

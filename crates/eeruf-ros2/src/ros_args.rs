@@ -3,7 +3,7 @@
 /// ROS's arguments for the node: its name, its namespace, its parameters and other names for topics.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RosArgs {
-    node: String,
+    pub(crate) node: String,
     /// From the root, without a slash at its end: empty, or as `/robot_1`.
     namespace: String,
     /// Pairs of old and new name, in order, not yet expanded.
@@ -96,14 +96,6 @@ impl RosArgs {
         }
     }
 
-    pub(crate) fn set_node(&mut self, node: &str) {
-        node.clone_into(&mut self.node);
-    }
-
-    pub(crate) fn node(&self) -> &str {
-        &self.node
-    }
-
     /// Returns the namespace in ROS's form: `/` or `/robot_1`.
     pub(crate) fn namespace(&self) -> &str {
         if self.namespace.is_empty() { "/" } else { &self.namespace }
@@ -153,7 +145,7 @@ mod tests {
              --ros-args --remap ~/sonar_1:=front",
         );
         assert_eq!(own.join(" "), "--log a.csv --port /dev/x");
-        assert_eq!((read.node(), read.namespace(), &*read.full_name()), ("left", "/robot_1", "/robot_1/left"));
+        assert_eq!((&*read.node, read.namespace(), &*read.full_name()), ("left", "/robot_1", "/robot_1/left"));
         let one = |name: &str, value: &str| Given::One(name.to_owned(), value.to_owned());
         assert_eq!(read.given, [Given::File("p.yaml".to_owned()), one("sensors", "4"), one("baud", "9600")]);
         assert_eq!(read.topic("~/sonar_1"), "/robot_1/front");

@@ -78,7 +78,7 @@ impl Ros {
         let parameters = &setup.parameters;
         let participant = participant::join(domain()?)?;
         let context = Context::from_domain_participant(participant).map_err(wrong("DDS"))?;
-        let node_name = NodeName::new(args.namespace(), args.node()).map_err(wrong(&args.full_name()))?;
+        let node_name = NodeName::new(args.namespace(), &args.node).map_err(wrong(&args.full_name()))?;
         let mut node = context.new_node(node_name, options(parameters)).map_err(wrong("node"))?;
         // It answers those who ask for parameters, until the node is dropped.
         let spinner = node.spinner().map_err(wrong("parameters"))?;
@@ -110,7 +110,7 @@ impl Ros {
             scene,
             odometry,
             parameters: parameters.clone(),
-            name: args.node().to_owned(),
+            name: args.node.clone(),
             hardware: if parameters.source == Source::Serial { parameters.port.clone() } else { String::new() },
         })
     }

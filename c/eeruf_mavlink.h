@@ -120,9 +120,8 @@ static inline uint16_t eeruf_mavlink_cm(const EerufMavlink *link, const EerufWat
 
 /* The nearest that sensors see in each sector of 5 degrees; then what one does not know; free is what all call so. */
 static inline void eeruf_mavlink_obstacles(EerufMavlink *link, const EerufWatch *watch) {
-    uint16_t sectors[72];
+    uint16_t sectors[72] = {0};
     uint8_t sector, x, unanswered;
-    memset(sectors, 0, sizeof sectors);
     for (x = 0; x < link->sensors; x++) {
         const uint16_t cm = eeruf_mavlink_cm(link, watch, x, &unanswered);
         for (sector = 0; sector < 72; sector++) {
@@ -160,8 +159,7 @@ static inline void eeruf_mavlink_distance(EerufMavlink *link, uint8_t sensor, ui
     eeruf_mavlink_put(link, 255, 1);             /* covariance unknown */
     eeruf_mavlink_put(link, 0x3f051eb8u, 4);     /* 0.52 rad */
     eeruf_mavlink_put(link, 0x3f051eb8u, 4);
-    memset(link->frame + link->size, 0, 16);     /* a quaternion is for rotations without a name */
-    link->size = (uint8_t)(link->size + 16);
+    eeruf_mavlink_put(link, 0, 16);              /* a quaternion is for rotations without a name */
     eeruf_mavlink_put(link, 100, 1);
     eeruf_mavlink_end(link, 85);
 }
@@ -205,8 +203,7 @@ static inline void eeruf_mavlink_next(EerufMavlink *link, const EerufWatch *watc
         eeruf_mavlink_put(link, (uint32_t)!link->failed << 25, 4);
         eeruf_mavlink_put(link, 0xffff0000u, 4); /* load; voltage and current unknown */
         eeruf_mavlink_put(link, 0xffff, 2);
-        memset(link->frame + link->size, 0, 12);
-        link->size = (uint8_t)(link->size + 12);
+        eeruf_mavlink_put(link, 0, 12);
         eeruf_mavlink_put(link, 0xff, 1);
         eeruf_mavlink_end(link, 124);
     } else if (link->sees && (link->armed || !link->failed)) {

@@ -82,10 +82,10 @@ static int index_of(char port) {
     return port - 'A';
 }
 
-/* True if the Uno itself holds a pin high. */
-static int is_driven_high(int pin) {
+/* True if the board itself holds a pin at a level. */
+static int is_driven(int pin, int level) {
     const int port = index_of(port_of(pin));
-    return (ports[port] & directions[port]) >> bit_of(pin) & 1;
+    return directions[port] >> bit_of(pin) & 1 && (ports[port] >> bit_of(pin) & 1) == level;
 }
 
 /* simavr 1.6 does not know that pins of the Mega's ports J and K interrupt when they change: PCINT1 and PCINT2. */
@@ -239,19 +239,13 @@ static avr_cycle_count_t on_burst(avr_t *a, avr_cycle_count_t when, void *param)
     return 0;
 }
 
-/* True if the Uno itself holds a pin low. */
-static int is_driven_low(int pin) {
-    const int port = index_of(port_of(pin));
-    return (~ports[port] & directions[port]) >> bit_of(pin) & 1;
-}
-
 /* A port's outputs or directions have changed. */
 static void look_at_triggers(void) {
     int i;
     for (i = 0; i < module_count; i++) {
         struct Module *module = &modules[i];
-        const int high = is_driven_high(module->trigger);
-        if (has(module, LATCHED) && module->line_high && is_driven_low(module->echo)) {
+        const int high = is_driven(module->trigger, 1);
+        if (has(module, LATCHED) && module->line_high && is_driven(module->echo, 0)) {
             module->pulled++;
             set_line(module, 0);
         }
@@ -402,7 +396,6 @@ int main(int argc, char **argv) {
     avr = avr_make_mcu_by_name(board->controller);
     if (avr == NULL) return 2;
     avr_init(avr);
-    avr->frequency = 16000000;
     avr->log = LOG_ERROR;
     avr_load_firmware(avr, &firmware);
     avr->frequency = 16000000;

@@ -165,14 +165,25 @@ impl Layer for Obstacles {
     }
 }
 
-/// The range layer with the parameters that this project's file had: cones alone, `phi` 1.2, cleared at the maximum.
+/// The range layer, `phi` 1.2, cleared at the maximum: of cones alone, or as this project's file was at e124fa7.
 struct Ranges {
     grid: Grid,
     half_view: f64,
     max_m: f32,
+    /// Cells marked by the obstacle layer, which cleared none. `inflate_cone` 1.0: the box of a cone is updated.
+    as_shipped: Option<Vec<bool>>,
 }
 
 impl Ranges {
+    fn new(cell_m: f64) -> Self {
+        Self { grid: Grid::new(cell_m, 127), half_view: 0.26, max_m: 4.0, as_shipped: None }
+    }
+
+    fn as_shipped(cell_m: f64) -> Self {
+        let ranges = Self::new(cell_m);
+        Self { as_shipped: Some(vec![false; ranges.grid.costs.len()]), ..ranges }
+    }
+
     fn model(&self, range: f64, phi: f64, theta: f64) -> f64 {
         let gamma = if theta.abs() > self.half_view { 0.0 } else { 1.0 - (theta / self.half_view).powi(2) };
         let lambda = (1.0 - f64::midpoint(1.0, (2.0 * (phi - 1.2)).tanh())) * gamma;
@@ -198,8 +209,10 @@ impl Layer for Ranges {
             if range < 0.0 {
                 continue;
             }
-            if let Some(index) = self.grid.index(self.grid.cell(polar(at, range))) {
+            let target = self.grid.cell(polar(at, range));
+            if let Some(index) = self.grid.index(target) {
                 self.grid.costs[index] = 233;
+                self.as_shipped.iter_mut().for_each(|marked| marked[index] |= !clear);
             }
             let side = |turn: f64| self.grid.cell(polar([at[0], at[1], at[2] + turn], 1.2 * range));
             let [o, a, b] = [self.grid.cell([at[0], at[1]]), side(-self.half_view), side(self.half_view)];
@@ -207,7 +220,16 @@ impl Layer for Ranges {
                 |a: [i32; 2], b: [i32; 2], c: [i32; 2]| (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
             for index in 0..self.grid.costs.len() {
                 let cell = self.grid.cell(self.grid.middle(index));
-                if orient(a, b, cell) < 0 || orient(b, o, cell) < 0 || orient(o, a, cell) < 0 {
+                let is_between = |axis: usize| {
+                    let corners = [o, a, b, target].map(|corner| corner[axis]);
+                    corners.iter().min() <= Some(&cell[axis]) && Some(&cell[axis]) <= corners.iter().max()
+                };
+                let is_updated = if self.as_shipped.is_some() {
+                    is_between(0) && is_between(1)
+                } else {
+                    orient(a, b, cell) >= 0 && orient(b, o, cell) >= 0 && orient(o, a, cell) >= 0
+                };
+                if !is_updated {
                     continue;
                 }
                 let (phi, theta) = bearing(at, self.grid.middle(index));
@@ -224,7 +246,11 @@ impl Layer for Ranges {
             0..50 => FREE,
             _ => UNKNOWN,
         };
-        Grid { costs: self.grid.costs.iter().map(cost).collect(), ..self.grid }
+        let mut costs: Vec<_> = self.grid.costs.iter().map(cost).collect();
+        for (index, _) in self.as_shipped.iter().flatten().enumerate().filter(|&(_, &is_marked)| is_marked) {
+            costs[index] = LETHAL;
+        }
+        Grid { costs, ..self.grid }
     }
 }
 
@@ -385,10 +411,22 @@ fn obstacle_layer_keeps_walls_and_forgets_persons() {
 #[test]
 fn range_layer_frees_walls_that_sensors_see() {
     all(
-        |cell_m| Box::new(Ranges { grid: Grid::new(cell_m, 127), half_view: 0.26, max_m: 4.0 }),
+        |cell_m| Box::new(Ranges::new(cell_m)),
         |case, Shares { walls, .. }| {
             let overlaps_or_beyond_phi = case.spacing_deg < 30.0 || case.wall_m > 2.0;
             !overlaps_or_beyond_phi || 100 * walls[1] > 4 * walls[0]
+        },
+    );
+}
+
+// Clear cones free walls that stand, and of a person who has left every mark stays.
+#[test]
+fn file_of_e124fa7_fails_the_model() {
+    all(
+        |cell_m| Box::new(Ranges::as_shipped(cell_m)),
+        |case, Shares { walls, left }| {
+            let frees_walls = case.turn_deg_s != 0.0 || 100 * walls[1] > 15 * walls[0];
+            frees_walls && (!case.person || left[0] > 20 && left[1] == left[0])
         },
     );
 }

@@ -103,7 +103,7 @@ pub(crate) fn arduino(plan: &Plan, steps: &mut Steps) {
 
 /// The library as one installs it, its files and those of `c/`: packed as the `.zip` that the IDE takes, and unpacked
 /// into a folder `libraries`, as the IDE does.
-fn pack() -> Result<PathBuf> {
+pub(crate) fn pack() -> Result<PathBuf> {
     let target = Path::new(TARGET);
     let (library, libraries) = (target.join("Eeruf"), target.join("libraries"));
     empty(&library)?;

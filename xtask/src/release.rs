@@ -16,7 +16,8 @@ What remains for a person, in this order (docs/project/releasing.md says how):
   1. read CHANGELOG.md once more as a user would, and the site (cargo xtask site)
   2. run the long checks that changed code asks for, and put their figures into the docs
   3. git tag v{VERSION} && git push origin v{VERSION}: the workflow publishes crates and wheels, and drafts the release
-  4. publish the draft, and try `pip install eeruf` and `cargo install eeruf` on another machine
+  4. push the files of target/arduino/Eeruf to the mirror that Arduino's library manager reads, with the same tag
+  5. publish the draft, and try `pip install eeruf` and `cargo install eeruf` on another machine
 ";
 
 /// Folder of the bills of materials.
@@ -45,6 +46,7 @@ pub(crate) fn release(steps: &mut Steps) {
     steps.step("public items", crate::api::api);
     steps.step("bills of materials", materials);
     crate::package::package(steps);
+    steps.step("Arduino library", || crate::arduino::pack().map(drop));
     steps.step("wheel and source distribution", || crate::python::distributions(Path::new("target/release-files")));
     println!("{}", REMAINS.replace("{VERSION}", &version));
 }

@@ -40,6 +40,8 @@ const CAR: &str = "tests/data/car-4.toml";
 /// A ring whose file names no module, and which listens for no longer than to its ranges.
 const CAR_12: &str = "rings/car-12.toml";
 const MAVLINK: &str = "arduino --mavlink";
+/// Programs for the car alone.
+const OF_CAR: [&str; 2] = [MAVLINK, "rust --way two-phases"];
 const RINGS: [&str; 8] =
     [CAR, "2", "6", "rings/hc-sr04-8.toml", "12", "rings/magni-5.toml", "rings/nao-2.toml", CAR_12];
 const LANGUAGES: [&str; 4] = ["arduino", "c", "rust", "micropython"];
@@ -84,7 +86,7 @@ pub(crate) fn programs(drawn: &Drawn, short: bool) -> Result<()> {
     for ring in rings {
         // Its sensors have limits of their own, which MicroPython's ring has not.
         let languages = &LANGUAGES[..if *ring == CAR_12 { 3 } else { 4 }];
-        asked.extend(languages.iter().chain([&MAVLINK].into_iter().filter(|_| *ring == CAR)).map(|options| Asked {
+        asked.extend(languages.iter().chain(OF_CAR.iter().filter(|_| *ring == CAR)).map(|options| Asked {
             ring: (*ring).to_owned(),
             options: (*options).to_owned(),
             load: None,

@@ -7,7 +7,7 @@ use eeruf_core::judge::{Heard, Judge, Sounds, Verdict};
 use eeruf_core::plan::ScheduledFiring;
 use eeruf_core::{EchoFilter, Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, tables::PAPER_12};
 
-/// Nearer than about a metre.
+/// Echoes sooner than this are near: about one metre.
 const NEAR: Micros = Micros::from_millis(6);
 
 /// The filter, with a warning for near echoes that it has not confirmed.

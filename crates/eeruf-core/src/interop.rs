@@ -1,5 +1,5 @@
-//! Conversions to and from the time types of `core` and of other crates, each of those behind the feature of that
-//! crate's name.
+//! Conversions to and from the time types of `core` and of other crates, the latter behind a feature named after the
+//! crate.
 
 use core::time::Duration;
 
@@ -72,7 +72,7 @@ impl From<Micros> for Duration {
     }
 }
 
-/// Conversion to whole microseconds, rounded down; above [`Micros::MAX`], longer than any window or period, it is that.
+/// Conversion to whole microseconds, rounded down; saturates at [`Micros::MAX`], longer than any window or period.
 impl From<Duration> for Micros {
     fn from(duration: Duration) -> Self {
         Self::new(u32::try_from(duration.as_micros()).unwrap_or(u32::MAX))

@@ -195,7 +195,7 @@ pub trait Judge {
     fn pace(&self) -> Pace {
         Pace::STANDING
     }
-    /// The quiet that a sensor needs after its reading, the latest of all, for plans that depend on it.
+    /// The quiet that the sensor of the latest reading needs, for plans that depend on it.
     fn quiet(&self) -> Quiet {
         Quiet::Same
     }

@@ -322,7 +322,7 @@ impl<U: OwnLimits> InUse<U> {
         Some(SensorLimits { t_delta: one.t_delta.min(other.t_delta), window: one.window.min(other.window) })
     }
 
-    /// Returns true if `receiver` can hear `emitter`; in the first period after a change by either.
+    /// Returns true if `receiver` can hear `emitter`; in the first period after a change, if either schedule lets it.
     #[inline]
     pub(crate) fn hears(&self, receiver: u8, emitter: u8) -> bool {
         self.now.hears(receiver, emitter) || self.before.hears(receiver, emitter)

@@ -255,7 +255,7 @@ impl<const K: usize> Schedule<K> {
         sums
     }
 
-    /// Wait of a sensor and a phase that exist. A wait is below the period, so it fits.
+    /// Wait of a sensor in a phase, both in range. A wait is below the period, so it fits.
     const fn wait_us(&self, phase: usize, sensor: usize) -> i32 {
         self.fire_at(phase, sensor).as_micros() as i32 - self.t_lag()[sensor].as_micros() as i32
     }

@@ -53,7 +53,7 @@ pub enum RingError {
     VerifiedWindow {
         /// The window asked for.
         window: Micros,
-        /// The one that the schedule was verified for.
+        /// The window that the schedule was verified for.
         verified: Micros,
     },
     /// The window ends before the blanking time, or the blanking time is longer than a ring can store.

@@ -234,7 +234,7 @@ impl Survey {
         }
     }
 
-    /// Notes a firing; if it is late, all that follows is.
+    /// Notes a firing; if it is late, all later steps are delayed too.
     fn fire(&mut self, sensor: u8, now: Instant, late: Micros) {
         self.begins += late;
         for listener in self.listeners.iter_mut().flatten().filter(|listener| listener.fired.is_none()) {

@@ -70,7 +70,7 @@ pub enum SensorState {
     },
     /// The sensor does not answer, or its line is stuck.
     Unanswered {
-        /// The time for which that has been so.
+        /// Time for which it has not answered.
         since: Micros,
     },
     /// Nothing is known.

@@ -1,9 +1,9 @@
 //! Firings that wait for each other: a controller needs some time for each, and gives it to one after the other.
 //!
 //! A schedule may let sensors fire at the same instant that do not hear each other. The controller fires them one by
-//! one, so that all but the first come late, by more the more there are; each time differently, since others coincide
-//! in the other phase. What was proven of the planned times does not hold of the real ones, and readings become
-//! ambiguous. So firings are moved apart by as much as one takes, within what the schedule has to spare.
+//! one, so that all but the first come late, and differently in each phase, since other firings coincide there. What
+//! was proven of the planned times does not hold of the real ones, and readings become ambiguous. So firings are moved
+//! apart by as much as one takes, within what the schedule has to spare.
 
 use eeruf_core::{MAX_SENSORS, Micros, Phase};
 use eeruf_files::AnySchedule;

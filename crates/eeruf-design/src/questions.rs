@@ -9,7 +9,7 @@ use crate::moving::Moving;
 use crate::ring::RingSpec;
 use crate::shortest::Effort;
 
-/// The answer to the question which `t_delta` fits into a period.
+/// The `t_delta` that fits into a period, with its schedule.
 #[derive(Clone, Debug)]
 pub struct Fit {
     /// A schedule of that period: one that meets the ring's needs, or else the one with the largest `t_delta`.

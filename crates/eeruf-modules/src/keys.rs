@@ -17,9 +17,9 @@ pub struct Key {
 /// The type of a figure.
 #[derive(Clone, Copy, Debug)]
 enum Kind {
-    /// A number in the file's unit, kept as this many thousandths or whole ones, up to a largest.
+    /// A number in the file's unit, stored in units of 1 / `scale`, at most `most`.
     Number { scale: f64, most: f64, get: fn(&Module) -> u32, set: fn(&mut Module, u32) },
-    /// A word, one of these.
+    /// A word from a list.
     Word { names: &'static [&'static str], get: fn(&Module) -> &'static str, set: fn(&mut Module, &str) -> bool },
 }
 

@@ -71,13 +71,13 @@ macro_rules! words {
 words! {
     /// The growth of a receiver's gain while it listens.
     Gain {
-        /// Constant rest, whatever was heard.
+        /// Constant gain.
         Constant = "constant",
-        /// With the square root of time.
+        /// Gain proportional to the square root of time.
         SquareRoot = "square_root",
-        /// In proportion to time, which makes up for spherical spreading.
+        /// Gain proportional to time, which makes up for spherical spreading.
         Linear = "linear",
-        /// As linear, in twelve equal steps.
+        /// Linear gain, in twelve equal steps.
         Stepped = "stepped",
         /// The twelve steps of the Polaroid 6500's control circuit.
         Polaroid6500 = "polaroid_6500",
@@ -155,12 +155,12 @@ pub struct PulseTimes {
     pub deaf_us: u32,
     /// Shorter pulses are no echoes: 100 us is 17 mm, less than these modules can measure.
     pub shortest_us: u32,
-    /// A line that rises later after the trigger was not raised by it, as of exchanged wires. An HC-SR04 takes half a
-    /// millisecond, so that one which fires a millisecond later raises a line later than this, a choice.
+    /// A line that rises later than this was not raised by the trigger, as with swapped wires. An HC-SR04 takes half a
+    /// millisecond, so one that fires a millisecond later raises its line later than this, a choice.
     pub latest_rise_us: u32,
     /// Pulses this long are the module's own time-out, which may be a nineteenth short: no echo.
     pub longest_us: u32,
-    /// The longest that a healthy module holds its line where nothing is in range, and a quarter.
+    /// The longest time for which a healthy module holds its line where nothing is in range, plus a quarter.
     pub longest_hold_us: u32,
 }
 

@@ -5,7 +5,7 @@ use crate::module::{Beam, CLONE_HOLDS_US, Gain, Interface, Module, NoEcho};
 /// The source of a figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
-    /// A document that gives it, and what it says.
+    /// A document that gives the figure, and its words.
     Document(&'static str),
     /// A choice of ours, and why.
     Choice(&'static str),

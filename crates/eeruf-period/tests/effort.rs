@@ -1,5 +1,5 @@
-//! Steps of the search to its answers, the same on each machine: recorded in `tests/data/period-effort.txt`. There a
-//! change of its steps shows what it costs or saves. `EERUF_WRITE=1` rewrites the file.
+//! Steps of the search to its answers, the same on each machine: recorded in `tests/data/period-effort.txt`. A change
+//! of the search shows there what it costs or saves. `EERUF_WRITE=1` rewrites the file.
 
 #[path = "common/alike.rs"]
 mod alike;
@@ -40,7 +40,7 @@ fn ask(record: &mut String, name: &str, problem: &Problem) {
     writeln!(record, "{name} to spare: {more:?} {proven:?}; {nodes} nodes, {:08x}", sum(&spare.fire)).unwrap();
 }
 
-/// Rings, lines and blocks of the sizes that are built, in ticks of different lengths, any graphs, and small rings
+/// Asks about rings, lines and blocks of usual sizes in ticks of different lengths, random graphs, and small rings
 /// whose sensors differ.
 fn ask_all() -> String {
     let mut record = String::new();

@@ -121,7 +121,7 @@ impl Tally {
     }
 }
 
-/// Goes through `part` hundredths of the problems that are asked for.
+/// Runs a check on `part` hundredths of the requested problems.
 fn for_each_problem(part: u32, seed: u64, mut check: impl FnMut(&Alike<'_>, &mut Random)) {
     let number = |name| std::env::var(name).ok().map(|text: String| text.parse::<u64>().expect(name));
     let problems = number("EERUF_BRUTE_FORCE").unwrap_or(200) * u64::from(part) / 100;

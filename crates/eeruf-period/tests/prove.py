@@ -14,7 +14,9 @@ def text(word, numbers):
 
 
 def countings(checker, head, count):
-    """The lines on counting that the checker accepts, a list for each argument; cliques that have all sensors first."""
+    """Return the counting lines that the checker accepts, a list for each argument; cliques that contain all sensors
+    come first.
+    """
     def accepted(lines):
         try:
             checker.Problem(checker.Lines("\n".join([*head, *lines, "end", ""])))
@@ -33,7 +35,7 @@ def countings(checker, head, count):
 
 
 def assumptions(checker, head, count, greatest):
-    """The lines for the root that the checker accepts: all permutations, an exchange, a reversal."""
+    """Return the root lines that the checker accepts: all permutations, an exchange, a reversal."""
     def accepted(lines):
         reader = checker.Lines("\n".join([*head, *lines, "end", ""]))
         try:
@@ -51,7 +53,7 @@ def assumptions(checker, head, count, greatest):
 
 
 def tree(checker, problem, node):
-    """The lines of a tree that refutes the node; None if nothing is open and it is not refuted."""
+    """Return the lines of a tree that refutes the node; None if it is not refuted and nothing is open."""
     every = range(problem.sensors)
     if problem.sets and node.left():
         found = ["next"]

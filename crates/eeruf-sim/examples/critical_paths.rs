@@ -1,4 +1,4 @@
-//! Which sensors of a scene's first ring hear each other, after what time, and how far above the threshold: `cargo run
+//! Lists the sensors of a scene's first ring that hear each other, with time and level above the threshold: `cargo run
 //! -p eeruf-sim --example critical_paths -- scenes/alcove.toml`
 
 use std::{error::Error, path::PathBuf};

@@ -30,7 +30,7 @@ pub use settings::{BeliefSettings, TurnSettings, Votes};
 pub type FlowRing<const K: usize, const E: usize = 1, U = ()> = Ring<InTurn<K, U>, Belief<K, E>, K, E, 3>;
 
 impl<const K: usize, const E: usize> FlowRing<K, E> {
-    /// A ring of `sensors` sensors that begins at `now`. Of `config` only the window and the blanking time are used. R
+    /// A ring of `sensors` sensors that begins at `now`. Only the window and the blanking time of `config` are used. R
     /// is the longest quiet of `turns`, and P is that of `belief`.
     ///
     /// # Errors

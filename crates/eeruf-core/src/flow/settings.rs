@@ -78,7 +78,7 @@ impl TurnSettings {
         Ok(EachSensor::for_flow(limits, requirements.together()).with_shared_lines(uneven.shared_lines))
     }
 
-    /// Returns settings with the rest of the module that rests longest.
+    /// Returns settings with the longest rest of any module.
     #[must_use]
     pub fn keeping(self, requirements: &Requirements<'_>) -> Self {
         let refire = requirements.uneven.map_or(&[][..], |uneven| uneven.refire);
@@ -131,7 +131,7 @@ pub struct BeliefSettings {
     /// `T_delta`: greatest difference of two consecutive readings that agree, for a robot that stands.
     pub t_delta: Micros,
     /// H: greatest difference of a reading from the belief, for a robot that stands. For an edge between two instants
-    /// the middle counts, since a reading that fits has no promise anyway.
+    /// the middle counts, since no promise covers a reading that fits.
     pub near: Micros,
     /// P: the largest change of a foreign path between two readings of a robot that stands.
     pub path_change: Micros,

@@ -20,7 +20,7 @@ pub struct Upcoming {
     pub due: Instant,
 }
 
-/// Limits that a plan sets to the ring it fires.
+/// Limits that a plan sets for its ring.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PlanLimits<'s> {

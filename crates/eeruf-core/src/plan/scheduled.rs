@@ -192,15 +192,15 @@ const fn settling_time<const K: usize, const M: usize>(schedule: &Schedule<K, M>
 }
 
 impl<'s> PlanLimits<'s> {
-    /// Limits of a schedule whose sensors have limits of their own, at most these: no sensor fires again within its own
-    /// window.
+    /// Limits of a schedule whose sensors have limits of their own, none greater than `most`: no sensor fires again
+    /// within its own window.
     fn of_most(most: &'s VerifiedFor) -> Self {
         Self { longest_window: most.window, verified_for: Some(most), audible: Some(most.audible) }
     }
 }
 
 impl<const K: usize, const M: usize> Schedule<K, M> {
-    /// Limits that the plan sets to a ring.
+    /// The limits that the plan sets for its ring.
     pub(crate) const fn limits(&self) -> PlanLimits<'_> {
         let audible = match self.verified_for() {
             Some(verified_for) => verified_for.audible,

@@ -85,7 +85,7 @@ pub struct Ring<P, J, const K: usize, const E: usize = 1, const H: usize = 4> {
     oldest: u8,
     /// Number of sensors whose reading can be emitted before their window closes.
     ready: u8,
-    /// The last sensor to join them; it may have emitted its reading since.
+    /// The last sensor that became ready; it may have emitted its reading since.
     last_ready: u8,
     /// Number of sensors that listen.
     listening_now: u8,

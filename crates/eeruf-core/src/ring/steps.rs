@@ -83,7 +83,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         self.punctuality.disturb(self.listening.is_proven(&self.plan));
     }
 
-    /// Notes that the next firing, due at an instant, may be due sooner since `now`.
+    /// Notes at `now` that the next firing, due at `due`, may be due sooner.
     pub(super) fn brought_forward(&mut self, due: Instant, now: Instant) {
         self.plan.due_from(if now.has_reached(due) { due } else { now });
     }

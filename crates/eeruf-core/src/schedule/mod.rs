@@ -141,12 +141,12 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
         }
     }
 
-    /// Requirements that it was verified for, if it was.
+    /// Requirements that the schedule was verified for, if any.
     pub(crate) const fn verified_for(&self) -> Option<&VerifiedFor> {
         self.verified_for.as_ref()
     }
 
-    /// Returns true if it was verified: a copy of what a [`VerifiedSchedule`](crate::VerifiedSchedule) holds.
+    /// Returns true if the schedule is that of a [`VerifiedSchedule`](crate::VerifiedSchedule), or a copy.
     pub const fn is_verified(&self) -> bool {
         self.verified_for.is_some()
     }

@@ -2,8 +2,7 @@
 
 use crate::time::Micros;
 
-/// Requirements that a schedule was verified for, where it was. Only
-/// [`Schedule::verified`](crate::Schedule::verified) makes one.
+/// Requirements that a schedule was verified for. Only [`Schedule::verified`](crate::Schedule::verified) makes one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]

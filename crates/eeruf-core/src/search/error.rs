@@ -62,7 +62,7 @@ pub enum SearchError {
     },
     /// Even firing one by one takes longer than [`MAX_PERIOD`].
     TooLong {
-        /// The time that it takes, in microseconds.
+        /// The time that firing one by one takes, in microseconds.
         period_us: u64,
     },
     /// Firing one by one takes longer than [`MAX_PERIOD`] because every need is rounded up to a whole tick.

@@ -28,14 +28,14 @@ use crate::common::random::Random;
 
 const K: usize = 16;
 const GOLDEN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/ring-golden.txt");
-/// Rings in the corpus beside those of [`RARE`]; `EERUF_RINGS` of them for a longer comparison.
+/// Number of rings in the corpus besides [`RARE`]; `EERUF_RINGS` sets it for a longer comparison.
 const RINGS: u64 = 40;
 /// Seeds of rings in which a port differs if it handles a limit wrongly: `audible`, `path_change`, the tolerated
 /// lateness, the periods for which an irregular firing counts, the period of a late edge, restarts, proven timetables,
 /// `t_delta`.
 const RARE: [u64; 12] = [67, 86, 390, 449, 672, 1043, 1494, 1531, 1984, 2369, 2505, 2893];
 const STEPS: u32 = 64;
-/// Interval between looks that is longer than that of any edge that is not late.
+/// Interval between samples that is too long for any punctual edge.
 const LOOKS: u32 = 900;
 const NONE: u32 = u32::MAX;
 
@@ -167,7 +167,7 @@ struct World {
     /// True if the only sound is that of the path.
     path_only: bool,
     echoes: Vec<(u32, u8)>,
-    /// Lines are looked at this many microseconds apart at most; 0 for when they fall.
+    /// Greatest interval between samples of the lines in microseconds; 0 if falls are seen at once.
     looks: u32,
 }
 

@@ -387,8 +387,8 @@ fn schedules_hash_as_they_compare() {
     assert!(TABLE_I_A != TABLE_I_D && hash(&TABLE_I_A) != hash(&TABLE_I_D));
 }
 
-/// The kind of the first reading of sensor 1 after this long without a poll, if two readings agree that are longer than
-/// sound is audible.
+/// The kind of the first reading of sensor 1 after this long without a poll, if two readings agree whose echo times
+/// exceed the audible time.
 fn across_a_sleep(minutes: u32) -> ReadingKind {
     let config = RingConfig::new().with_audible(ms(10));
     let mut ring = Ring::new(&PAPER_12, config, Instant::from_micros(0)).unwrap();

@@ -23,7 +23,7 @@ pub struct CaptureRing<R, C, const K: usize> {
     /// Firings that the hardware holds, in order, and their number.
     armed: [(u8, Instant); K],
     count: usize,
-    /// True if the last of them is later than it was due: all others move with it once it has fired.
+    /// True if the last armed firing is later than it was due: once it has fired, all later ones move with it.
     is_late: bool,
     is_held: bool,
     /// For each sensor, an edge later than the last poll of the ring.
@@ -78,7 +78,7 @@ impl<P: Plan, J: Judge, C: Captures, const K: usize, const H: usize> CaptureRing
         self.count == 0 && self.ring.upcoming().nth(1).is_none()
     }
 
-    /// Hands the firings to the hardware that it should have by now.
+    /// Hands to the hardware the firings that are due soon.
     fn arm(&mut self, now: Instant) {
         while !self.is_held && !self.is_late {
             let Some(next) = self.ring.upcoming().nth(self.count) else { return };

@@ -8,7 +8,7 @@
 
 use crate::engine::problem::Merged;
 
-/// Times in phases a and b of each sensor of the merged problem.
+/// Firing times of each sensor of the merged problem, in phases a and b.
 pub(crate) type Times = Vec<[i32; 2]>;
 
 /// A pattern of construction: the distance of colours in phase b, the number of colours reversed in phase a, and true

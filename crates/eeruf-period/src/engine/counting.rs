@@ -239,7 +239,7 @@ impl Even {
         })
     }
 
-    /// The bounds that need gaps.
+    /// Counts bounds that need gaps.
     fn bounds(&self, merged: &Merged) -> Vec<Bound> {
         let (sensors, interval) = (self.count as u32, self.interval as u32);
         let own = self.interval.min(self.window) as u32;

@@ -5,7 +5,7 @@ use core::str::FromStr;
 
 use serde::ser::{Serialize, SerializeStruct as _, Serializer};
 
-/// Effects that are computed. `docs/explanation/physics.md` says what each is, and where its default comes from.
+/// Effects that are computed. `docs/explanation/physics.md` explains each, and the source of its default.
 ///
 /// ```
 /// use eeruf_sim::Physics;
@@ -110,7 +110,7 @@ impl Serialize for Physics {
     }
 }
 
-/// A name that is no preset's.
+/// An unknown name of a preset.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownPhysics(String);
 

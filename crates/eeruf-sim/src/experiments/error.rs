@@ -12,7 +12,7 @@ use crate::{
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ExperimentError {
-    /// Not one geometry or course.
+    /// No geometry or course.
     NoSeeds,
     /// Geometries or courses beyond the last number.
     Numbers {
@@ -21,7 +21,7 @@ pub enum ExperimentError {
         /// The number of geometries or courses.
         seeds: u64,
     },
-    /// Not one method.
+    /// No method.
     NoMethods,
     /// Two methods of one name.
     Twice {

@@ -76,7 +76,7 @@ fn perpendicular(vector: Vector) -> Vector {
     Vector::new(-vector.y, vector.x)
 }
 
-/// A circle about the origin, a source on the positive x axis and a receiver that is not below it.
+/// A circle about the origin, a source on the positive x axis and a receiver that is not below that axis.
 struct Problem {
     source: f64,
     receiver: Vector,

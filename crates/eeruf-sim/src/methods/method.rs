@@ -183,7 +183,7 @@ impl FromStr for Method {
     }
 }
 
-/// A name that is no method's.
+/// An unknown name of a method.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownMethod(pub String);
 

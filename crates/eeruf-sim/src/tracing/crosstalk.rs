@@ -349,8 +349,8 @@ pub(crate) struct Moved {
 }
 
 impl Moved {
-    /// Returns a path whose emitter and receiver were there when it was found, and are here now: by the way that they
-    /// have gone along it longer or shorter, and as loud as their patterns are in its directions.
+    /// Returns a path adapted to new poses of its emitter and receiver: its length changes by their motion along it,
+    /// and its amplitude by the patterns in its new directions.
     pub(crate) fn carried(&self, path: &CriticalPath, ends: [[&Pose; 2]; 2]) -> CriticalPath {
         let directions = [path.departure_rad, path.arrival_rad];
         let gone_m = |end: usize| {

@@ -88,7 +88,7 @@ impl Ticker {
         stretch.from + ((own_ns + rate - 1) / rate) as u64
     }
 
-    /// The counter after this many ticks.
+    /// The reading of the counter after this many ticks.
     pub(crate) fn instant(&self, ticks: u64) -> Instant {
         Instant::from_micros(self.offset_us.wrapping_add(ticks as u32))
     }

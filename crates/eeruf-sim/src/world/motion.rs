@@ -2,7 +2,7 @@
 
 use crate::geometry::{Moment, Point, Pose, Vector};
 
-/// The fastest motion, in m/s and rad/s: a choice, beyond any robot: more is a mistake in the input.
+/// The fastest motion, in m/s and rad/s: a choice beyond any robot, since more is a mistake in the input.
 pub const MAX_SPEED: f64 = 50.0;
 
 /// Motion of a robot from its first pose on.

@@ -17,7 +17,7 @@ use crate::{
     scene::{Body, DEFAULT_HEIGHT_M},
 };
 
-/// The most robots in one world: a choice, beyond any use: more is a mistake in the input.
+/// The most robots in one world: a choice beyond any use, since more is a mistake in the input.
 pub const MAX_ROBOTS: usize = 64;
 /// A robot with its ring. Make one with [`Robot::ring`] and change what differs.
 #[derive(Clone, Debug, PartialEq)]

@@ -194,7 +194,7 @@ impl World {
         self.max_order
     }
 
-    /// The most bounces that sound is followed for if one of them is at a pole.
+    /// Largest number of bounces for which sound is followed if one of them is at a pole.
     pub fn pole_order(&self) -> u32 {
         self.pole_order.min(self.max_order)
     }

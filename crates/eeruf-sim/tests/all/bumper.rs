@@ -1,4 +1,4 @@
-//! Modules side by side on a bumper, all fired at once: what they hear of each other straight along it.
+//! Modules side by side on a bumper, all fired at once, which hear each other directly along it.
 
 use std::path::Path;
 

@@ -1,4 +1,4 @@
-//! Two facts of the paper, and how bad scenes are refused.
+//! Two facts of the paper, and the refusal of bad scenes.
 
 use eeruf_sim::{
     Air, CrosstalkMatrix, CrosstalkQuery, Faces, GainProfile, Limits, Material, PathsError, Point, Pole, Pose, Scene,
@@ -32,7 +32,7 @@ fn over_floor_db(distance_m: f64, away: usize) -> f64 {
     20.0 * (direct.map(|path| path.amplitude).fold(0.0, f64::max) / floor).log10()
 }
 
-/// Sec. 3 of the paper: a wall 0.5 to 1 m away.
+/// Checks Sec. 3 of the paper: a wall 0.5 to 1 m away.
 #[test]
 fn wall_at_a_metre_reaches_three_neighbours() {
     for distance_m in [0.5, 0.75, 1.0] {
@@ -46,7 +46,7 @@ fn wall_at_a_metre_reaches_three_neighbours() {
     assert!(over_floor_db(0.75, 4) < 0.0 && over_floor_db(1.0, 4) < 0.0);
 }
 
-/// Footnote 1 of Sec. 4.
+/// Checks footnote 1 of Sec. 4.
 #[test]
 fn pole_of_8_mm_between_sensors_is_heard_at_1_6_m() {
     let ring: Vec<_> = ring_of(&Pose::identity(), 2, 0.3, -7.5f64.to_radians(), 15f64.to_radians()).collect();
@@ -76,8 +76,8 @@ fn heard_up_to_deg(distance_m: f64, gain: GainProfile) -> i32 {
     (0..=90).rev().find(heard).unwrap_or(-1)
 }
 
-/// Published regions end near 10 to 15 degrees, 25 to 30 for strong near walls: so they do here beyond a metre, and
-/// with a gain that grows also nearer.
+/// Checks that walls are heard up to the published angles: near 10 to 15 degrees, and 25 to 30 for strong near walls.
+/// With a constant gain this holds beyond a metre, with a growing gain also nearer.
 #[test]
 fn walls_are_heard_as_far_off_axis_as_reported() {
     let constant = [1.0, 2.0, 4.0].map(|distance_m| heard_up_to_deg(distance_m, GainProfile::Constant));

@@ -1,4 +1,4 @@
-//! Sounds that reach a receiver within a burst of each other, against waveforms that are added up sample by sample.
+//! Sounds that reach a receiver within a burst of each other, compared with waveforms added sample by sample.
 
 use std::f64::consts::TAU;
 
@@ -19,8 +19,8 @@ fn before_a_wall([distance_m, height_m, heading_rad]: [f64; 3], gain: GainProfil
     World::new(scene, vec![robot], Noise::NONE).unwrap().with_physics(physics).unwrap()
 }
 
-/// Travelling time in seconds, and amplitude relative to the threshold, of each image of the sensor in wall, floor and
-/// ceiling that is at most 10 dB below the threshold.
+/// The travel time in seconds, and the amplitude relative to the threshold, of each image of the sensor in wall, floor
+/// and ceiling that is at most 10 dB below the threshold.
 fn images([distance_m, height_m, heading_rad]: [f64; 3]) -> Vec<(f64, f64)> {
     let air = Air::default();
     let (c, ceiling_m) = (air.speed_of_sound(), Room::DEFAULT.ceiling_m);

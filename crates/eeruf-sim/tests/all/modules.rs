@@ -5,7 +5,7 @@ use std::path::Path;
 use eeruf_sim::modules::{HC_SR04, MB1242, Module, POLAROID_6500};
 use eeruf_sim::*;
 
-/// In a box of 3 m by 2 m two HC-SR04, one MB1242, which hears them, and a Polaroid, which does not.
+/// Two HC-SR04 in a box of 3 m by 2 m, one MB1242, which hears them, and a Polaroid, which does not.
 const WORLD: &str = r#"
 seed = 3
 max_order = 3

@@ -23,7 +23,7 @@ fn open(world: &Arc<World>, method: Method, own: Own) -> Result<Simulation, Simu
 /// Sensor, period, phase, kind, cause, numbers by their bits, and path of a reading.
 type Row = (SensorId, u32, u8, ReadingKind, Cause, [u64; 5], Option<HeardPath>);
 
-/// All of it of all readings.
+/// The columns of all readings.
 fn columns(readings: &Readings) -> Vec<Row> {
     let row = |k: usize| {
         let times = [&readings.fired_s, &readings.t_echo_us, &readings.earliest_us, &readings.emitted_s];
@@ -63,7 +63,7 @@ fn paper<const E: usize>() -> Paper<E> {
     Paper(EchoFilter::new(Micros::new(500), 2).unwrap())
 }
 
-/// A filter that believes the median of three readings, and of two equal ones the same as the method.
+/// A filter that believes the median of three readings; of two equal ones it believes what the method believes.
 #[derive(Default)]
 struct Median(std::collections::HashMap<u8, ([Option<Echo>; 3], usize)>);
 

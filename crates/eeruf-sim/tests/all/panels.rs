@@ -250,7 +250,8 @@ fn furnished(random: &mut Random) -> (Scene, Point, Point) {
     }
 }
 
-/// Panels may be louder than walls: a bound on what walls return must not be taken for one on what panels do.
+/// Checks that no audible path over panels is lost: panels may be louder than walls, so a bound for walls must not
+/// serve for panels.
 #[test]
 fn nothing_that_is_heard_over_panels_is_lost() {
     let (mut heard, mut louder, mut around) = (0, 0, 0);

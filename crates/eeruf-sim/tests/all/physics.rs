@@ -154,7 +154,7 @@ fn bodies_and_sensors_that_are_inside_something_are_refused() {
     assert!(refused(open_air(vec![disc(-1.0, 0.0)])).contains("body"));
 }
 
-/// A world in which a robot moves, alone or beside another one that it cannot hear but whose paths are met in between.
+/// A world in which a robot moves, alone or beside another that it cannot hear but whose paths are found in between.
 fn moving(physics: Physics, beside: bool) -> Readings {
     let room = Wall::polyline(&[[-3.0, -2.0], [3.0, -2.0], [3.0, 2.0], [-3.0, 2.0], [-3.0, -2.0]]).collect();
     let motion = Motion::Constant { velocity: Vector::new(0.1, 0.02), turn_rad_s: 0.2 };

@@ -165,8 +165,8 @@ proptest! {
     }
 }
 
-/// Sources and receivers on a lattice: paths through corners, along the mesh's own diagonals and through the joints of
-/// walls that were cut at lattice points.
+/// Checks sources and receivers on a lattice: paths through corners, along the mesh's own diagonals and through the
+/// joints of walls that were cut at lattice points.
 #[test]
 fn a_rectangle_has_one_path_per_image_even_on_a_lattice() {
     let cut = |corners: &[[f64; 2]]| Scene::new(Wall::polyline(corners).collect(), vec![], Air::default()).unwrap();

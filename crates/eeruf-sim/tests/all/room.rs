@@ -1,4 +1,5 @@
-//! Rooms with floor and ceiling: every image of boxes in closed form, reciprocity, and what pointing up or down costs.
+//! Rooms with floor and ceiling: every image of boxes in closed form, reciprocity, and the loss from pointing up or
+//! down.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -6,7 +7,7 @@ use eeruf_sim::*;
 
 use crate::random::{free_point, scene as random_scene};
 
-/// A box of this size with its corner at the origin, all of it perfect.
+/// A box of this size with its corner at the origin and perfect surfaces.
 fn box_room(size: [f64; 3]) -> Scene {
     let [x, y, ceiling_m] = size;
     let corners = [[0.0, 0.0], [x, 0.0], [x, y], [0.0, y], [0.0, 0.0]];
@@ -164,7 +165,7 @@ fn patterns_take_the_angle_in_space() {
     assert!(floor.elevations_rad.iter().all(|&up| up < 0.0 && up > -FRAC_PI_2));
 }
 
-/// Everything that is heard is found by the search that leaves out what is too faint: a pole and panels too.
+/// Checks that the search which omits faint paths finds everything that is heard, with a pole and panels too.
 #[test]
 fn nothing_that_is_heard_in_a_room_is_kept_back() {
     let mut random = Random::new(12);
@@ -241,8 +242,8 @@ fn rooms_and_heights_that_make_no_sense_are_refused() {
     assert_eq!(error, "robot 1: height_m is 3; expected more than 0, and less than the ceiling");
 }
 
-/// A low robot hears the floor: its ring reads otherwise than in a flat room, and the same where floor and ceiling are
-/// silent.
+/// Checks that a low robot hears the floor: its readings differ from those in a flat room, and equal them if floor and
+/// ceiling are silent.
 #[test]
 fn a_room_changes_what_rings_read_and_a_silent_one_does_not() {
     let run = |room: Option<Room>| {

@@ -5,7 +5,7 @@ use std::path::Path;
 use eeruf_core::{Micros, ReadingKind};
 use eeruf_sim::*;
 
-/// A room of 3 m by 2 m, and a ring of four: two see 3 m, two that fire together 0.4 m.
+/// A room of 3 m by 2 m, and a ring of four: two sensors see 3 m, two that fire together 0.4 m.
 const WORLD: &str = r#"
 seed = 7
 max_order = 3

@@ -13,7 +13,7 @@ fn error(text: &str) -> String {
     World::from_text(Path::new("w.toml"), text).unwrap_err().to_string()
 }
 
-/// The error for a robot with more lines, after `WALL`: its own lines are 3 to 5, the additional ones begin at 6.
+/// The error for a robot with additional lines after `WALL`: its own lines are 3 to 5, the additional ones begin at 6.
 fn robot_error(more: &str) -> String {
     error(&format!("{WALL}{ROBOT}{more}"))
 }

@@ -37,7 +37,7 @@ impl Owned {
         }
     }
 
-    /// The paper's ring: lags in groups of four, all times in ticks of which a millisecond has `per_ms`.
+    /// The paper's ring: lags in groups of four, all times in ticks, `per_ms` to a millisecond.
     pub fn paper(sensors: usize, layout: Layout, separation: u32, per_ms: u32, criterion: Criterion) -> Self {
         Self {
             lag: (0..sensors).map(|i| (i % 4) as u32 * 25 * per_ms).collect(),

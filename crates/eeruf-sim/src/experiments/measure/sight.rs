@@ -95,7 +95,7 @@ impl Trial {
         }
     }
 
-    /// From the thing's appearing to the first of these beliefs in it; NaN without a thing.
+    /// Latency from the thing's appearance to the first of these beliefs in it; NaN without a thing.
     fn latency_ms<'b>(&self, robot: &Robot, beliefs: impl Iterator<Item = &'b Believed>) -> f64 {
         if self.thing.is_none() {
             return f64::NAN;
@@ -107,8 +107,8 @@ impl Trial {
         if late_s > NEVER_S { f64::INFINITY } else { 1e3 * late_s }
     }
 
-    /// Returns true if every setting has seen the thing by these readings, which are all until a time but for those of
-    /// sensors that still listen then.
+    /// Returns true if every setting has seen the thing by these readings: all up to a time, except those of sensors
+    /// that still listen then.
     pub(super) fn is_seen(&self, robot: &Robot, heard: &[Heard], until_s: f64) -> bool {
         let of_sensor = |sensor| heard.iter().filter(move |one| one.sensor == sensor).copied().collect::<Vec<_>>();
         let by_sensor: Vec<Vec<Heard>> = (0..robot.sensors.len()).map(of_sensor).collect();

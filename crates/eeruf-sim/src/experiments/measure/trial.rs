@@ -35,7 +35,7 @@ const STEP_M: f64 = 0.06;
 const STEP_DEG: f64 = 6.0;
 /// Times after the thing's appearing at which a trial may end, as it is seen, in seconds.
 const LOOKS_S: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 3.5];
-/// From one look for contact to the next, in seconds.
+/// Interval between checks for contact, in seconds.
 const LOOK_S: f64 = 0.01;
 
 /// A robot's motion.

@@ -15,7 +15,7 @@ use crate::{
 
 /// The version of the set. A room is fixed by version and number.
 pub const VERSION: u32 = 1;
-/// Simulated time of a robot that drives, in seconds, and has way to drive.
+/// Simulated time of a driving robot, in seconds, for which it has a free way.
 pub const DRIVING_S: f64 = 8.0;
 
 /// The random key of places in maps, beside those of the kinds.
@@ -87,7 +87,7 @@ impl Serialize for RoomKind {
     }
 }
 
-/// A name that no kind of room has.
+/// An unknown name of a kind of room.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownRoom(pub String);
 

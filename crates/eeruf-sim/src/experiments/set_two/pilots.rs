@@ -88,7 +88,7 @@ impl FromStr for Pilots {
     }
 }
 
-/// A name that is no pilot's.
+/// An unknown name of a pilot.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownPilot(pub String);
 

@@ -420,7 +420,7 @@ impl Channels {
         Ok(())
     }
 
-    /// Returns whether sound matters to one of the listeners after a path of a length.
+    /// Returns a function that tells if sound matters to one of the listeners after a path of a given length.
     fn by_length<'a>(
         &self,
         listeners: &[usize],
@@ -447,8 +447,8 @@ impl Channels {
         on_one.map_or(0.0, |robot| self.world.robots()[robot].coupling())
     }
 
-    /// Hands out the channels of paths; those that were found when the sensors stood elsewhere as they are now, if they
-    /// matter.
+    /// Appends the channels of the paths that matter; paths found for other positions of the sensors are adapted to the
+    /// present ones.
     fn hand_out(
         &mut self,
         emitters: &[usize],

@@ -1,4 +1,4 @@
-//! Numbers of paths, equal for equal walls and poles between the same sensors.
+//! Numbers of paths: one for the same walls and poles between the same sensors.
 
 use core::hash::{BuildHasherDefault, Hasher};
 use std::collections::HashMap;

@@ -1,5 +1,5 @@
-//! Paths that simulations of one scene share, whatever their robots fire by: sought where the robots are at instants a
-//! step apart, and carried on from the nearest of those to each firing.
+//! Paths that simulations of one scene share, whatever the firing method: found for the robots' poses at instants a
+//! step apart, and adapted from the nearest instant to each firing.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};

@@ -68,7 +68,7 @@ impl Propagation {
         self.knot_ns > 0
     }
 
-    /// The slack of an arrival whose time is itself known only to a slack, in nanoseconds.
+    /// The slack of an arrival whose own time is uncertain by `more`, in nanoseconds.
     pub(crate) fn slack(&self, more: u64) -> u64 {
         self.slack.saturating_add(more)
     }

@@ -271,7 +271,7 @@ impl<K: Kinematics> EventLoop<K> {
         self.channels.share(shared);
     }
 
-    /// A robot's ring changes to another schedule, of as many sensors, when its period ends.
+    /// Changes a robot's ring to another schedule, of as many sensors, when its period ends.
     pub(crate) fn change_schedule(&mut self, robot: usize, schedule: &AnySchedule) -> Result<(), ChangeError> {
         self.rings.get_mut(robot).map_or(Err(ChangeError::Fixed), |ring| ring.ring.change_schedule(schedule))
     }
@@ -393,8 +393,8 @@ impl<K: Kinematics> EventLoop<K> {
         }
     }
 
-    /// Triggers a sensor: it, or the sensor at whose trigger wire it is, begins to listen and sends its sound to every
-    /// sensor that can hear it.
+    /// Triggers a sensor: it, or the sensor on its trigger wire, begins to listen and sends its sound to every sensor
+    /// that can hear it.
     fn fire(&mut self, rings: &mut [RunningRing], index: usize, triggered: usize, now: u64) -> Result<(), PathsError> {
         self.triggered[triggered] = now;
         self.receivers[triggered].forget();

@@ -14,7 +14,7 @@ use crate::{
     results::{Cause, HeardPath, NO_PATH, Readings, SensorId},
 };
 
-/// Number of readings of a sensor that fit at any moment: more than rings give at one.
+/// Number of readings of a sensor for which room is kept: more than rings emit at one moment.
 const ROOM: usize = 4;
 
 /// Recorder of the readings.
@@ -63,7 +63,7 @@ impl Recorder {
         self.readings.is_empty()
     }
 
-    /// Makes sure that some more of each sensor fit.
+    /// Reserves room for some more readings of each sensor.
     pub(crate) fn make_room(&mut self) -> Result<(), SimulationError> {
         let least = ROOM * self.ids.len();
         if self.readings.room() >= least {

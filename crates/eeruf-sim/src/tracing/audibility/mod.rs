@@ -38,7 +38,7 @@ pub(crate) struct Audibility {
     receivers: Vec<Vector>,
 }
 
-/// Tables of what is just heard of an emitter by receivers of a kind.
+/// Tables of the faintest audible sound from an emitter to receivers of one kind.
 #[derive(Debug, PartialEq)]
 struct Tables {
     /// The emitter's and the receivers' patterns.
@@ -59,7 +59,7 @@ struct Tables {
 }
 
 thread_local! {
-    /// Tables made of late, which take longer to make than short simulations to run.
+    /// Recently made tables, kept since making one takes longer than a short simulation.
     static KNOWN: RefCell<VecDeque<Arc<Tables>>> = const { RefCell::new(VecDeque::new()) };
 }
 /// Number of tables that are kept for each thread.
@@ -84,8 +84,8 @@ impl Tables {
 }
 
 impl Audibility {
-    /// For an emitter and receivers with these patterns, in a flat scene or in a room; for the amplitude that is just
-    /// heard, and the natural logarithm of what the air leaves of one per metre.
+    /// Makes tables for an emitter and receivers with these patterns, in a flat scene or in a room, for the faintest
+    /// audible amplitude, and the natural logarithm of the air's attenuation per metre.
     pub(crate) fn new(pistons: [Piston; 2], in_room: bool, floor: f64, loss_per_m: f64) -> Self {
         let floor_and_loss = [floor, loss_per_m];
         let tables = KNOWN.with_borrow_mut(|known| {

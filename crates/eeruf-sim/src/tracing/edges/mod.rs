@@ -67,7 +67,7 @@ pub(crate) struct EdgeQuery<'a> {
     pub(crate) receivers: &'a [Point],
     pub(crate) ends: &'a Ends,
     pub(crate) limits: Limits,
-    /// In rad/m.
+    /// Wave number, in rad/m.
     pub(crate) wave_number: f64,
     /// Difference in length, in metres, below which paths over the two ends of a wall are one. `None` to keep all
     /// separate.

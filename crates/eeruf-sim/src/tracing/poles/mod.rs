@@ -79,7 +79,7 @@ pub(crate) struct PoleSearch {
     bounces: Vec<Bounce>,
     from_source: Legs,
     back: BeamTree,
-    /// Legs of each receiver of this query, and of the previous one if it had the same receivers.
+    /// Legs of each receiver of this query, kept for the next query if it has the same receivers.
     homes: Vec<Home>,
     /// Number of valid entries; the others are kept for their memory.
     grown: usize,

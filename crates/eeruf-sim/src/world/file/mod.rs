@@ -97,7 +97,7 @@ pub struct WorldParts {
     pub noise: Noise,
     /// The effects.
     pub physics: Physics,
-    /// The most bounces that sound is followed for.
+    /// Largest number of bounces for which sound is followed.
     pub max_order: u32,
     /// Seed of all that is random.
     pub seed: u64,

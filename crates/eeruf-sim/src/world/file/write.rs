@@ -55,7 +55,7 @@ pub fn world_file(
     file.to_string()
 }
 
-/// Wraps values that are in no text yet.
+/// Wraps values that are not in a text yet.
 fn nowhere<T>(of: T) -> Spanned<T> {
     Spanned::new(0..0, of)
 }

@@ -20,7 +20,7 @@ const FILE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/src/search/wait/tests/e
 /// The nodes that a question may cost.
 const BUDGET: u64 = 3000;
 
-/// Adds what it is shown to a sum, in order: two walks of the same sum went the same way.
+/// A running checksum of steps: walks with equal sums took the same steps.
 struct Trace {
     polls: u32,
     sum: u64,
@@ -29,7 +29,7 @@ struct Trace {
 impl Trace {
     const NEW: Self = Self { polls: 0, sum: 0xcbf2_9ce4_8422_2325 };
 
-    /// FNV-1a over what `Debug` says.
+    /// Adds the `Debug` text of a value, by FNV-1a.
     fn add(&mut self, what: &impl Debug) {
         for byte in format!("{what:?};").bytes() {
             self.sum = (self.sum ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
@@ -48,7 +48,7 @@ impl Trace {
 struct Record(String);
 
 impl Record {
-    /// Asks a question: what is asked is handed a watcher, and says its answer, the nodes it took and a schedule.
+    /// Runs a search with a watcher, and records its answer, its nodes and its schedule.
     fn ask<S: Debug>(
         &mut self,
         question: &str,
@@ -90,7 +90,7 @@ impl Record {
     }
 }
 
-/// The paper's lags in lines, rings and blocks of the sizes that are built, and any graphs.
+/// Searches with the paper's lags in lines, rings and blocks of usual sizes, and with random graphs.
 fn ask_all() -> Record {
     let mut record = Record::default();
     let mut random = Random(20_261_123);

@@ -1,4 +1,4 @@
-//! The engine in ticks: the steps that it takes, and values that no question in microseconds has.
+//! Tests of the engine in ticks: its steps, and values that cannot come from microseconds.
 
 extern crate std;
 

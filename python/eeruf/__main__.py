@@ -1,4 +1,4 @@
-"""The command ``eeruf``, which the wheel brings along: ``python -m eeruf --help``."""
+"""The command ``eeruf`` of the wheel: ``python -m eeruf --help``."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from eeruf._eeruf import _run_program
 
 
 def main() -> int:
-    """Run the command with the words of this process, and return its exit code."""
+    """Run the command with this process's arguments, and return its exit code."""
     return _run_program(["eeruf", *sys.argv[1:]])
 
 

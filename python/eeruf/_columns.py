@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
 
 def column(name: str, values: ArrayLike, dtype: type[_Number]) -> NDArray[_Number]:
-    """Make an array with one dimension of what may be a list, an array or a data frame's column."""
+    """Make an array with one dimension from a list, an array or a data frame's column."""
     import numpy as np
 
     try:
@@ -31,7 +31,7 @@ def column(name: str, values: ArrayLike, dtype: type[_Number]) -> NDArray[_Numbe
 
 
 class Columns:
-    """A table of which each column is an attribute."""
+    """A table whose columns are attributes."""
 
     _columns: ClassVar[tuple[str, ...]] = ()
 

@@ -1,4 +1,4 @@
-"""Results from the JSON that Rust prints, joined and compared."""
+"""Results made, joined and compared from Rust's JSON."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def _pair(value: object) -> tuple[float, float] | None:
 
 
 def _with_pairs(of: _Fields) -> _Fields:
-    """Bounds of confidence as tuples."""
+    """Convert confidence bounds to tuples."""
     return {name: _pair(value) if name.endswith("_95") else value for name, value in of.items()}
 
 
@@ -56,7 +56,7 @@ def summary(text: str) -> Summary:
 
 
 def _spreads(of: _Fields) -> _Fields:
-    """The figures of a method, with spreads for dicts."""
+    """Convert the figures of a method, with spreads for dicts."""
     made: _Fields = {}
     for name, value in _with_pairs(of).items():
         kind = {"nearer": Latency, "farther": Latency, "new_step": NewStep}.get(name, Spread)

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 
 class _Text:
-    """A stream of bytes out of a file object that gives text."""
+    """A stream of bytes from a file object that gives text."""
 
     def __init__(self, file: io.TextIOBase) -> None:
         self._file = file
@@ -25,7 +25,7 @@ class _Text:
 
 @contextlib.contextmanager
 def opened_log(log: object, expected: str = "the path of a log, a URL or a file object") -> Iterator[object]:
-    """Give a path as it is, and a file object with its name; close what was opened."""
+    """Return a path unchanged, and a file object with its name; close what was opened."""
     is_url = isinstance(log, str) and "://" in log
     if is_url:
         try:

@@ -1,4 +1,4 @@
-"""Functions with which pickles make objects again."""
+"""Functions that recreate objects from pickles."""
 
 from __future__ import annotations
 

@@ -74,7 +74,8 @@ class Latency(Result):
 
 @dataclass(frozen=True)
 class NewStep(Result):
-    """The time until a wall is read right that comes nearer for the first time, where memory of places does not help.
+    """The time until a sensor reads a wall right that has come nearer for the first time, where remembering places
+    does not help.
 
     Example:
         >>> import eeruf
@@ -98,7 +99,7 @@ class NewStep(Result):
 
 @dataclass(frozen=True)
 class SetOneFigures(Result):
-    """A method's figures over the geometries of Set I; those of a :class:`~eeruf.typing.Summary`, spread.
+    """A method's figures over the geometries of Set I; those of a :class:`~eeruf.typing.Summary`, as spreads.
 
     A spread is None where no geometry has the figure.
 
@@ -552,7 +553,7 @@ class SpeedSweep(Table):
 
 @dataclass(frozen=True)
 class SetThreeFigures(Result):
-    """A method's figures over the placings of Set III; what counts sensors or seconds is of one robot.
+    """A method's figures over the placings of Set III; figures that count sensors or seconds are for one robot.
 
     A spread is None where no placing has the figure.
 

@@ -55,12 +55,12 @@ def _observed(state: _eeruf.BatchState) -> NDArray[np.float32]:
 
 
 class CourseVectorEnv(VectorEnv[NDArray[np.float32], NDArray[np.float32], NDArray[Any]]):
-    """Many courses at once, stepped on all cores. One that is over starts over in the same step, in another course.
+    """Many courses at once, stepped on all cores. A finished course is replaced by another one in the same step.
 
     Args:
         num_envs: how many, 1 or more.
         method: as of ``eeruf.sim.Batch``.
-        numbers: the courses that are drawn from.
+        numbers: the courses to draw from.
         step_s: the time that a step takes, in seconds.
         physics: as the argument of ``eeruf.sim.Scene``.
         threads: as of ``eeruf.sim.Batch``.
@@ -102,7 +102,7 @@ class CourseVectorEnv(VectorEnv[NDArray[np.float32], NDArray[np.float32], NDArra
         self._x_m = np.full(num_envs, _START_X_M)
 
     def _begin(self, worlds: NDArray[np.bool_]) -> _eeruf.BatchState:
-        """Start over in these worlds, in courses that are drawn."""
+        """Start over in these worlds, in newly drawn courses."""
         drawn = self.np_random.integers(len(self._courses), size=int(worlds.sum()))
         seeds = self.np_random.integers(2**63, size=len(drawn)).tolist()
         self._x_m[worlds] = _START_X_M
@@ -150,7 +150,7 @@ class CourseEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
 
     Args:
         method: as of ``eeruf.sim.Batch``.
-        numbers: the courses that are drawn from.
+        numbers: the courses to draw from.
         step_s: the time that a step takes, in seconds.
         physics: as the argument of ``eeruf.sim.Scene``.
 

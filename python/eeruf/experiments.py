@@ -1,7 +1,8 @@
-"""The paper's experiments (Sec. 4): robots that stand before walls, a robot that drives between poles; and robots of one make.
+"""The paper's experiments (Sec. 4): robots that stand before walls, a robot that drives between poles; and robots of
+one make.
 
-What the tables say, and where the paper promises too much, stands in ``docs/log/experiments.md``; the program prints
-the same ones (``eeruf experiment``). A method is a name or a ``eeruf.sim.Method``, which may have a filter or a firing
+``docs/log/experiments.md`` explains the tables, and where the paper promises too much; ``eeruf experiment`` prints
+the same ones. A method is a name or a ``eeruf.sim.Method``, which may have a filter or a firing
 of your own. Parameters are tuned on seeds below 2,000; what is reported starts at 20,000.
 """
 
@@ -83,14 +84,14 @@ class Scenes:
     @overload
     def __getitem__(self, index: slice) -> Scenes: ...
     def __getitem__(self, index: int | slice) -> _eeruf.Scene | Scenes:
-        """Make a scene, or take some of them."""
+        """Make a scene, or a sequence of some of them."""
         if isinstance(index, slice):
             return Scenes(self.kind, self.numbers[index], self.physics)
         make = _eeruf._alcove if self.kind == "alcove" else _eeruf._course
         return make(self.numbers[index], self.physics)
 
     def __iter__(self) -> Iterator[_eeruf.Scene]:
-        """Make the objects one after the other."""
+        """Make the scenes one after the other."""
         return (self[index] for index in range(len(self)))
 
     def __eq__(self, other: object) -> bool:
@@ -104,7 +105,7 @@ class Scenes:
         return hash((self.kind, self.numbers))
 
     def __repr__(self) -> str:
-        """Return the call that makes them."""
+        """Return a call that makes the same scenes."""
         return f"Scenes({self.kind!r}, {self.numbers!r}, {self.physics!r})"
 
 

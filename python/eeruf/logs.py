@@ -1,12 +1,13 @@
-"""Logs of robots: the ranges of bags, MCAP and CSV files, and what a ring's log of firings says about it.
+"""Logs of robots: the ranges of bags, MCAP and CSV files, and findings about a ring from its log of firings.
 
 Everything is read by the same code as ``eeruf logs``, ``eeruf replay``, ``eeruf diagnose`` and ``eeruf survey``;
-docs/how-to/logs.md says what is read. A log is a path, a file object, or whatever fsspec opens, as
+docs/how-to/logs.md lists the formats. A log is a path, a file object, or whatever fsspec opens, as
 ``"s3://bucket/drive.mcap"``; of a ROS 2 bag's folder in such a place the URL ends with ``/``, and it is copied first.
 
 Example:
     >>> import eeruf
-    >>> log = eeruf.logs.Firings.of(sensor=[0, 1], fired_us=[0, 500], period=[0, 0], phase=[0, 0], t_echo_us=[7000.0, 8000.0])
+    >>> log = eeruf.logs.Firings.of(sensor=[0, 1], fired_us=[0, 500], period=[0, 0], phase=[0, 0], t_echo_us=[7000.0,
+    8000.0])
     >>> eeruf.logs.diagnose(log).sender.tolist()  # two firings prove nothing
     [-1, -1]
 
@@ -433,10 +434,11 @@ def read_log(
 
 
 def check(log: object, **options: Unpack[_Options]) -> Checked:
-    """Say of anything that holds ranges whether its sensors read each other's sound, and what to do next.
+    """Find out from any log of ranges if its sensors read each other's sound, and what to do next.
 
     Args:
-        log: a path, a URL, a file object or a text that was pasted, as :func:`read_log` reads them; a DataFrame of pandas or polars; a
+        log: a path, a URL, a file object or a text that was pasted, as :func:`read_log` reads them; a DataFrame of
+        pandas or polars; a
             dict of columns; an array of one column per sensor; ``Ranges``; or ``Readings`` of the simulator.
         options: as of :func:`read_log`.
 
@@ -642,7 +644,7 @@ def _firings(log: Firings | _Log) -> Firings:
 
 
 def diagnose(log: Firings | _Log, *, tolerance_us: int = 75, max_travel_us: int = 80_000) -> Diagnosis:
-    """Say from a log of firings which sensors fool each other, whose sound each reading is, and what is broken.
+    """Find from a log of firings which sensors fool each other, the sender of each reading, and faults.
 
     Args:
         log: firings, or a path, a URL or a file object.
@@ -659,7 +661,8 @@ def diagnose(log: Firings | _Log, *, tolerance_us: int = 75, max_travel_us: int 
         >>> scene = sim.Scene.from_toml(eeruf.example("scenes/alcove.toml"))
         >>> r = sim.simulate(scene, "dither", periods=300)
         >>> log = eeruf.logs.Firings.of(
-        ...     sensor=r.sensor, fired_us=np.rint(1e6 * r.fired_s), period=r.period, phase=r.phase, t_echo_us=r.earliest_us
+        ...     sensor=r.sensor, fired_us=np.rint(1e6 * r.fired_s), period=r.period, phase=r.phase,
+        t_echo_us=r.earliest_us
         ... )
         >>> bool((eeruf.logs.diagnose(log).sender >= 0).mean() > 0.3)
         True
@@ -669,7 +672,7 @@ def diagnose(log: Firings | _Log, *, tolerance_us: int = 75, max_travel_us: int 
 
 
 def survey(log: Firings | _Log, *, tolerance_us: int = 100, until_us: int = 15_000) -> Surveyed:
-    """Say from a measuring run who hears whom; docs/how-to/survey.md says how to make one.
+    """Find from a measuring run which sensors hear each other; docs/how-to/survey.md explains such a run.
 
     Args:
         log: firings, or a path, a URL or a file object.
@@ -683,7 +686,8 @@ def survey(log: Firings | _Log, *, tolerance_us: int = 100, until_us: int = 15_0
     Example:
         >>> import eeruf
         >>> alone = eeruf.logs.Firings.of(
-        ...     sensor=[0] * 9, fired_us=range(0, 900_000, 100_000), period=range(9), phase=[0] * 9, t_echo_us=[7000.0] * 9
+        ...     sensor=[0] * 9, fired_us=range(0, 900_000, 100_000), period=range(9), phase=[0] * 9,
+        t_echo_us=[7000.0] * 9
         ... )
         >>> eeruf.logs.survey(alone).paths["travel_us"].tolist()
         [7000.0]

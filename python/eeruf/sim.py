@@ -1,6 +1,6 @@
 """Rooms and robots: every critical path, and the ring in simulated time.
 
-``METHODS`` are the firing methods that :func:`simulate` knows; ``eeruf.typing.CAUSES`` is what ``Readings.cause`` counts through.
+``METHODS`` are the firing methods that :func:`simulate` knows; ``Readings.cause`` indexes ``eeruf.typing.CAUSES``.
 """
 
 from __future__ import annotations

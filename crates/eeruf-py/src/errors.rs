@@ -1,5 +1,5 @@
-//! Errors of Rust as exceptions, with the same messages: an `EerufError`, which is a `ValueError`, and of it two kinds
-//! that programs catch by themselves, of logs and of certificates.
+//! Errors of Rust as exceptions, with the same messages: `EerufError`, a `ValueError`, with two subclasses that
+//! programs catch separately, for logs and for certificates.
 
 use std::ffi::CString;
 use std::fmt::Display;
@@ -85,7 +85,7 @@ macro_rules! raised {
     )+};
 }
 
-/// An error as code counts, from 0, where the program prints from 1.
+/// Formats an error with sensors counted from 0, as in code.
 fn from_zero(error: &impl Display) -> String {
     format!("{error:#}")
 }

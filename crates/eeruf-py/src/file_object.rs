@@ -20,7 +20,7 @@ const MOST_BYTES: usize = 1 << 20;
 /// Interval at which Python is asked if work must stop.
 const EVERY: Duration = Duration::from_millis(20);
 
-/// A request of the working thread to the waiting thread.
+/// A request of the working thread to the thread that waits for it.
 enum Ask<T> {
     Read(usize),
     Seek(SeekFrom),

@@ -36,7 +36,7 @@ struct Block {
     examination: Option<Examination>,
 }
 
-/// The readings of a log block by block, as dictionaries of columns. The last block has what all of the log shows.
+/// The readings of a log block by block, as dictionaries of columns. The last block has the findings of the whole log.
 #[pyclass(frozen, name = "_LogBlocks", module = "eeruf._eeruf")]
 pub(crate) struct LogBlocks {
     work: Exclusive<Option<Work<Result<Block, FileError>>>>,

@@ -119,7 +119,7 @@ impl Paths {
         self.columns.get(py, 2, self.paths.order.iter().map(|&index| i64::from(index)))
     }
 
-    /// The direction in which the path leaves the source, in (-pi, pi]: float64.
+    /// The direction from the receiver to the path's last bounce, in (-pi, pi]: float64.
     #[getter]
     fn departure_rad<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.columns.get(py, 3, self.paths.departure_rad.iter().copied())

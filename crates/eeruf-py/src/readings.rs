@@ -52,7 +52,7 @@ impl Readings {
         self.readings.len()
     }
 
-    /// The method that was simulated, one of ``METHODS``.
+    /// The simulated method, one of ``METHODS``.
     #[getter]
     fn method(&self) -> &'static str {
         self.readings.method.as_str()
@@ -176,7 +176,7 @@ impl Readings {
         Ok(columns)
     }
 
-    /// When the sound behind ``t_echo_us`` was sent, in seconds: float64.
+    /// Time when the sound behind ``t_echo_us`` was sent, in seconds: float64.
     #[getter]
     fn emitted_s<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.columns.get(py, 11, self.readings.emitted_s.iter().copied())

@@ -103,7 +103,7 @@ pub(crate) struct Robot {
 }
 
 impl Robot {
-    /// A robot that a file describes.
+    /// Converts a robot that a file describes.
     pub(crate) fn of(robot: &eeruf_sim::Robot) -> Self {
         Self {
             pose: from_pose(&robot.pose),

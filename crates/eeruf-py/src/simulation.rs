@@ -184,7 +184,7 @@ impl Simulation {
         Ok(self.under_way.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
-    /// Notes which thread is stepping.
+    /// Records the stepping thread.
     fn set_stepping(&self, who: Option<ThreadId>) {
         *self.stepping.lock().unwrap_or_else(PoisonError::into_inner) = who;
     }

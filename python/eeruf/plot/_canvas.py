@@ -43,7 +43,7 @@ def colours(ax: Axes) -> Colours:
 
 
 def axes(ax: Axes | None, *, width: float = 7.0, height: float = 4.0) -> Axes:
-    """The given axes, or new ones of this size in inches."""
+    """Return the given axes, or new ones of this size in inches."""
     if ax is not None:
         return ax
     try:
@@ -54,12 +54,12 @@ def axes(ax: Axes | None, *, width: float = 7.0, height: float = 4.0) -> Axes:
 
 
 def _width_pt(ax: Axes) -> float:
-    """About how wide these axes are, in points, before the layout is made."""
+    """Estimate the width of these axes, in points, before the layout is made."""
     return 72.0 * ax.figure.bbox.width / ax.figure.dpi * float(ax.get_position().width)
 
 
 def title(ax: Axes, text: str, *, legend_rows: int = 0) -> None:
-    """Say what is shown, in as many lines as the width asks for, above a legend of this many rows."""
+    """Set a title, in as many lines as the width requires, above a legend of this many rows."""
     ax.set_title(
         textwrap.fill(text, max(20, int(_width_pt(ax) / 5.8))),
         loc="left",
@@ -69,7 +69,7 @@ def title(ax: Axes, text: str, *, legend_rows: int = 0) -> None:
 
 
 def legend_above(ax: Axes, handles: list[Any] | None = None) -> int:
-    """Put a legend above the axes, in as many columns as there is room for; the number of its rows."""
+    """Put a legend above the axes, in as many columns as fit; return its number of rows."""
     shown = ax.get_legend_handles_labels()[0] if handles is None else handles
     if not shown:
         return 0
@@ -107,7 +107,7 @@ def check_whole(name: str, value: object, least: int, most: int) -> None:
 
 
 def points(name: str, value: ArrayLike, expected: str) -> NDArray[np.float64]:
-    """Points in the plane, a row each."""
+    """Return points in the plane, a row each."""
     try:
         return np.asarray(value, dtype=float).reshape(-1, 2)
     except (TypeError, ValueError):

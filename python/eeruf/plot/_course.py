@@ -107,7 +107,7 @@ def course(
 def _chosen(
     result: SetTwo | Run, method: str | None, course: int | None
 ) -> tuple[Run, str | None, tuple[float, float] | None]:
-    """A run, its method and where the second robot stood, as far as the result says."""
+    """Return a run, its method and the second robot's place, if the result has it."""
     from eeruf._results import Run, SetTwo
 
     if isinstance(result, Run):
@@ -130,7 +130,7 @@ def _chosen(
 
 
 def _outline(place: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The corners of the platform at a place of a track."""
+    """Return the corners of the platform at a place of a track."""
     _, x, y, heading, _ = place
     half = _eeruf._SIDE_M / 2
     ahead, aside = np.array([np.cos(heading), np.sin(heading)]), np.array([-np.sin(heading), np.cos(heading)])

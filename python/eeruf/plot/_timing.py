@@ -58,7 +58,7 @@ def timing(schedule: Schedule, *, window_us: int = 0, ax: Axes | None = None) ->
 
 
 def _lanes(ax: Axes, sensors: int, *, end_ms: float, top: float) -> Axes:
-    """A lane for each sensor, the first on top."""
+    """Draw a lane for each sensor, the first on top."""
     ax.set_xlim(0, end_ms)
     ax.set_ylim(sensors + 0.6, top)
     ax.set_yticks(range(1, sensors + 1))

@@ -17,7 +17,7 @@ _ALIKE_M = 1e-3
 
 
 def sensor_places(robot: Robot) -> NDArray[np.float64]:
-    """Where each sensor is in the room: rows of x, y (m) and heading (rad)."""
+    """Return the place of each sensor in the room: rows of x, y (m) and heading (rad)."""
     x, y, heading = robot.pose
     places = np.asarray(robot.sensor_poses, dtype=float).reshape(-1, 3)
     turn = np.array([[np.cos(heading), -np.sin(heading)], [np.sin(heading), np.cos(heading)]])
@@ -25,7 +25,7 @@ def sensor_places(robot: Robot) -> NDArray[np.float64]:
 
 
 def way(scene: Scene, heard: HeardPaths, path: int) -> NDArray[np.float64] | None:
-    """The corners of a path that some reading came along, shape (n, 2), emitter first; None if its robots stood elsewhere."""
+    """Return the corners of the path of some reading, shape (n, 2), emitter first; None if its robots stood elsewhere."""
     ends = []
     for robot, sensor in (("emitter_robot", "emitter"), ("receiver_robot", "receiver")):
         number = int(heard[robot][path])  # type: ignore[literal-required]

@@ -55,7 +55,7 @@
 #define EERUF_FLASH
 #endif
 
-/* Code that interrupts call lies in RAM, where flash cannot be read while it is written. */
+/* Code that interrupts call, in RAM: flash cannot be read while it is being written. */
 #if defined(ESP8266)
 #include <c_types.h>
 #define EERUF_IN_RAM IRAM_ATTR
@@ -70,7 +70,7 @@
 extern "C" {
 #endif
 
-/* The result of a call: 0 and above is fine. */
+/* The result of a call: 0 or more is success. */
 typedef int8_t EerufStatus;
 enum {
     EERUF_OK = 0,
@@ -83,7 +83,7 @@ enum {
     EERUF_ERR_NOT_READY = -4,    /* not initialised */
     EERUF_ERR_SENSOR = -5,       /* there is no such sensor */
     EERUF_ERR_SENSORS = -6,      /* not 1 to 64 sensors, or not as many as the ring has */
-    EERUF_ERR_PHASES = -7,       /* not 1 to 8 phases, or not as many as the ring has; two to be verified */
+    EERUF_ERR_PHASES = -7,       /* not 1 to 8 phases (2 if verified), or not as many as the ring has */
     EERUF_ERR_PERIOD = -8,       /* a period that is not 1 us to 268 s, or too short for window and code */
     EERUF_ERR_FIRE = -9,         /* a sensor would fire after its period has ended */
     EERUF_ERR_TABLE = -10,       /* a schedule that contradicts itself */
@@ -97,7 +97,7 @@ enum {
     EERUF_ERR_BLANKING = -18,    /* blanking no shorter than the window, or longer than 65,535 us */
     EERUF_ERR_COARSE_T_DELTA = -19, /* t_delta no shorter than the window, or longer than 65,535 us */
     EERUF_ERR_CONSECUTIVE = -20, /* not 2 to 8 readings compared */
-    EERUF_ERR_RETRIGGER = -21,   /* the schedule triggers a module again sooner than it may be */
+    EERUF_ERR_RETRIGGER = -21,   /* the schedule triggers a module before it has rested */
     EERUF_ERR_RANGE = -26,       /* a number outside its range */
     EERUF_ERR_FLOW = -27,        /* a flow ring cannot do this, or has a function of its own for it */
     EERUF_ERR_AUDIBLE = -29,     /* sound that is audible for less than 1,000 us, likely given in ms, or for more than 67 s */
@@ -134,7 +134,7 @@ enum { EERUF_LAYOUT_LINE = 0, EERUF_LAYOUT_RING = 1, EERUF_LAYOUT_BLOCKS = 2, EE
 
 /* The limits of one sensor, where they are not all alike. */
 typedef struct EerufLimits {
-    uint32_t window_us;   /* for how long it listens; 0: as long as the schedule allows */
+    uint32_t window_us;   /* listening time; 0: as long as the schedule allows */
     uint16_t t_delta_us;  /* what counts as the same echo */
     uint8_t group;        /* sensors of one group fire together and do not hear each other; 0 for none */
 } EerufLimits;
@@ -149,7 +149,7 @@ typedef struct EerufSchedule {
     uint32_t period_us;     /* T_p */
     uint32_t min_refire_us; /* the shortest time between two firings of one sensor */
     /* The requirements it was verified for: all zero if it was not. */
-    uint32_t t_delta_us;    /* (13a) and (13b) hold for it; the largest, as the window, where sensors have limits */
+    uint32_t t_delta_us;    /* (13a) and (13b) hold for it; like the window, the largest of all sensors */
     uint32_t min_interval_us;
     uint32_t window_us;
     uint32_t separation_us; /* least shift of crosstalk from one reading to the next */
@@ -158,8 +158,8 @@ typedef struct EerufSchedule {
     uint8_t verified;
     uint8_t layout;         /* EERUF_LAYOUT_.. */
     uint8_t neighbours;
-    uint8_t stale_echo;     /* whether a sensor's own echo from the period before is rejected too */
-    const EerufLimits *limits; /* of each sensor, where they are not all alike; else null */
+    uint8_t stale_echo;     /* true if a sensor's own echo from the period before is rejected too */
+    const EerufLimits *limits; /* one for each sensor if they differ; else null */
 } EerufSchedule;
 
 /* Checks every number of a schedule in flash, and that it meets what it says it was verified for: (13a), (13b), the
@@ -178,11 +178,11 @@ enum {
     EERUF_READING_REJECTED = 2, /* not near-identical: crosstalk, noise, or an object that moved too fast */
     EERUF_READING_REPEATED = 3, /* near-identical, but not yet often enough; in a flow ring: belief outlasts it */
     EERUF_READING_NO_ECHO = 4,  /* no echo, once, or without a witness */
-    EERUF_READING_CLEAR = 5,    /* no echo several times running: nothing is in range */
+    EERUF_READING_CLEAR = 5,    /* no echo several times in a row: nothing is in range */
     EERUF_READING_TOO_EARLY = 6, /* nothing but an edge within the blanking time */
     EERUF_READING_LATE = 7,     /* an edge after the window has ended; without echo time: its time is not known */
     EERUF_READING_STUCK = 8,    /* the echo line was high when the sensor was to fire */
-    EERUF_READING_TENTATIVE = 9, /* of rings before version 4 alone */
+    EERUF_READING_TENTATIVE = 9, /* only from rings before version 4 */
     EERUF_READING_AMBIGUOUS = 10, /* near-identical, but another sensor's sound explains both: not believed */
     EERUF_READING_UNANSWERED = 11, /* no evidence at all: no edge, no sign that it listened; never free space */
     EERUF_READING_KINDS = 12
@@ -192,7 +192,7 @@ enum {
 #define EERUF_BY_NOTHING 0xFFu
 
 typedef struct EerufReading {
-    uint32_t t_echo_us;   /* EERUF_NO_ECHO without echo */
+    uint32_t t_echo_us;   /* EERUF_NO_ECHO if there was none */
     uint32_t previous_us; /* what it was compared with, or EERUF_NO_ECHO */
     uint16_t age;         /* firings since the last accepted reading, or EERUF_NEVER */
     uint8_t kind;         /* EERUF_READING_.. */
@@ -219,13 +219,13 @@ typedef struct EerufFilter {
 typedef struct EerufSensor {
     uint32_t echo_us;
     EerufFilter filter;
-    uint32_t fired_us[EERUF_FIRINGS]; /* the last first */
+    uint32_t fired_us[EERUF_FIRINGS]; /* latest first */
 } EerufSensor;
 
 /* Settings of a ring's listening and comparing. */
 typedef struct EerufConfig {
     uint16_t version;     /* EERUF_VERSION */
-    uint8_t consecutive;  /* how many readings in a row must agree, 2 to 8 */
+    uint8_t consecutive;  /* number of consecutive readings that must agree, 2 to 8 */
     uint32_t t_delta_us;  /* 0: what the schedule was verified for, at most 65,535 us */
     uint32_t window_us;   /* 0: what the schedule was verified for */
     uint32_t blanking_us; /* edges sooner than this after firing are ringing, not echoes */
@@ -236,22 +236,22 @@ typedef struct EerufConfig {
 
 enum {
     EERUF_EVENT_FIRE = 0,    /* fire this sensor, now */
-    EERUF_EVENT_READING = 1, /* what came of an earlier firing */
+    EERUF_EVENT_READING = 1, /* the outcome of an earlier firing */
     EERUF_EVENT_PERIOD = 2   /* a period has ended */
 };
 
 /* Counts since the end of the period before. Times of lateness stop at 65,535 us. */
 typedef struct EerufPeriod {
-    uint16_t max_late_us;  /* the latest poll for a firing or the end */
-    uint16_t sum_late_us;  /* by which the timetable got longer */
+    uint16_t max_late_us;  /* largest lateness of a firing or of the end */
+    uint16_t sum_late_us;  /* sum of lateness: the timetable got longer by it */
     uint8_t tally[EERUF_READING_KINDS]; /* readings by kind; each stops at 255 */
 } EerufPeriod;
 
 typedef struct EerufEvent {
     uint8_t kind;    /* EERUF_EVENT_.. */
-    uint8_t sensor;  /* of a firing and a reading */
-    uint8_t phase;   /* in which the sensor fires or fired, or which has ended */
-    uint32_t period; /* in which the sensor fired, or which has ended, from 0; of a reading and a period */
+    uint8_t sensor;  /* for a firing or a reading */
+    uint8_t phase;   /* of the firing, or of the period that has ended */
+    uint32_t period; /* number of that period, from 0; for a reading or a period */
     union {
         uint32_t due_us;      /* EERUF_EVENT_FIRE: in the past if the poll is late */
         EerufReading reading; /* EERUF_EVENT_READING */
@@ -275,8 +275,8 @@ typedef struct EerufRing {
    schedule. Sizes are in bytes. The config may ask for less than the schedule was verified for, not for more. */
 EerufStatus eeruf_ring_init(EerufRing *ring, size_t ring_size, EerufSensor *sensors, size_t sensors_size,
                             const EerufSchedule *schedule, const EerufConfig *config, uint32_t now_us);
-/* By a schedule that need not be verified; the config says t_delta and window. Crosstalk is not accepted either, but
-   what it could explain is ambiguous: with constant waits nearly all. */
+/* Makes a ring by a schedule that need not be verified; the config gives t_delta and window. It accepts no crosstalk
+   either, but readings that crosstalk could explain are ambiguous: with constant waits nearly all. */
 EerufStatus eeruf_ring_init_unverified(EerufRing *ring, size_t ring_size, EerufSensor *sensors, size_t sensors_size,
                                        const EerufSchedule *schedule, const EerufConfig *config, uint32_t now_us);
 
@@ -289,8 +289,9 @@ EerufStatus eeruf_ring_poll(EerufRing *ring, uint32_t now_us, EerufEvent *event)
 EerufStatus eeruf_ring_poll_expecting(EerufRing *ring, uint32_t now_us, const int32_t *change_us, EerufEvent *event);
 /* When to poll next; 0 for a ring that is not initialised. */
 uint32_t eeruf_ring_deadline(const EerufRing *ring);
-/* When the next firing, or the end of the period, is due, whatever readings wait to be emitted. Who polls with little
-   time to spare waits for it: a reading takes time that makes the firing late. 0 for a ring that is not initialised. */
+/* The instant when the next firing or the end of the period is due, even if readings wait to be emitted. Shortly
+   before it do not poll: emitting a reading takes time and makes the firing late. 0 for a ring that is not
+   initialised. */
 uint32_t eeruf_ring_due(const EerufRing *ring);
 
 /* The firings to come, for a timer or other hardware that fires by itself: number 0 is the next, 1 the one after it.
@@ -300,21 +301,21 @@ uint32_t eeruf_ring_due(const EerufRing *ring);
    echoes; last poll at the present. A firing that hardware has missed is then still due. */
 EerufStatus eeruf_ring_upcoming(const EerufRing *ring, uint8_t number, uint8_t *sensor, uint32_t *due_us);
 
-/* An echo, at this instant. Any number, in any order, at any time, wanted or not. For a module that answers with a
-   pulse as long as the echo took this is the firing's instant plus the pulse's width: see EerufHcSr04. */
+/* Reports an echo at an instant: any number, in any order, at any time, expected or not. For a module whose pulse is
+   as long as the echo took, give the firing's instant plus the pulse's width: see EerufHcSr04. */
 EerufStatus eeruf_ring_echo(EerufRing *ring, uint8_t sensor, uint32_t at_us);
-/* An echo of which only this is known: the line was last seen without it at `earliest_us`, and with it at `latest_us`.
-   The middle counts, and a firing explains what it may. One that is more than 300 us off either way, 5 cm, is no distance:
-   its reading is EERUF_READING_LATE, without echo time. */
+/* Reports an echo between two instants: the line was last seen without it at `earliest_us`, and first with it at
+   `latest_us`. The middle counts, and explanations allow for the width. If it may be off by more than 300 us, 5 cm,
+   it is no distance: its reading is EERUF_READING_LATE, without echo time. */
 EerufStatus eeruf_ring_echo_between(EerufRing *ring, uint8_t sensor, uint32_t earliest_us, uint32_t latest_us);
 /* Corrects when a sensor last fired, to an instant before or after the poll: by what a timer captured, for example.
    Echo times count from it. If it is later, all that follows moves by as much. Call it before the readings that may
    hold the firing's sound are polled for: an accepted reading cannot be taken back. An instant that is not after the
    firing before is ignored. */
 EerufStatus eeruf_ring_fired(EerufRing *ring, uint8_t sensor, uint32_t at_us);
-/* When a sensor last fired; 0 for one that is not there. */
+/* The instant when a sensor last fired; 0 for one out of range. */
 uint32_t eeruf_ring_fired_at(const EerufRing *ring, uint8_t sensor);
-/* The echo line of a sensor was high when it was to be fired: its reading is EERUF_READING_STUCK. */
+/* Reports that a sensor's echo line was high when it was to fire: its reading is EERUF_READING_STUCK. */
 EerufStatus eeruf_ring_stuck(EerufRing *ring, uint8_t sensor);
 
 /* The meaning of silence, from the next firing on: a firing without an echo whose sensor has not shown by eeruf_ring_answered
@@ -327,13 +328,14 @@ enum {
 EerufStatus eeruf_ring_set_silence(EerufRing *ring, uint8_t silence);
 EerufStatus eeruf_ring_answered(EerufRing *ring, uint8_t sensor);
 EerufStatus eeruf_ring_unanswered(EerufRing *ring, uint8_t sensor); /* takes it back: that was a disturbance */
-/* A sensor holds its line: it rose after the trigger, or is high still so that there was none. Its silence counts once, when
-   that has fallen: eeruf_ring_answered. Until then its readings neither add to a run of silences nor break it. */
+/* Reports that a sensor holds its line: it rose after the trigger, or is still high so that there was no trigger.
+   Its silence counts once, when the line has fallen: eeruf_ring_answered. Until then its readings neither add to a
+   run of silences nor break it. */
 EerufStatus eeruf_ring_holds(EerufRing *ring, uint8_t sensor);
 /* Takes what hardware or a protocol measured of a sensor's firing, before its reading is emitted: the echo time, or
    EERUF_NO_ECHO if it listened and heard nothing. */
 EerufStatus eeruf_ring_measured(EerufRing *ring, uint8_t sensor, uint32_t t_echo_us);
-/* Notes an echo time between two, as eeruf_ring_echo_between. */
+/* Takes an echo time between two values, like eeruf_ring_echo_between. */
 EerufStatus eeruf_ring_measured_between(EerufRing *ring, uint8_t sensor, uint32_t least_us, uint32_t most_us);
 /* Forgets a sensor's echo, which is not what it seemed: its next reading is compared with nothing. Ages go on. */
 EerufStatus eeruf_ring_forget(EerufRing *ring, uint8_t sensor);
@@ -343,8 +345,9 @@ bool eeruf_ring_is_enabled(const EerufRing *ring, uint8_t sensor);
 EerufStatus eeruf_ring_pause(EerufRing *ring, bool paused); /* no sensor fires; periods go on */
 EerufStatus eeruf_ring_restart(EerufRing *ring, uint32_t now_us); /* again with the first phase, after a long sleep */
 
-/* The soonest time after its firing at which a reading without an echo comes, for modules that report by a bus or a
-   pulse's width after their window has closed: at most the time until a sensor fires again. 0: when it closes. */
+/* Sets the least time from a firing to its reading without an echo, for modules that report over a bus or by a
+   pulse's width after their window has closed: at most the time until a sensor fires again. 0: the end of the
+   window. */
 EerufStatus eeruf_ring_set_report_after(EerufRing *ring, uint32_t report_after_us);
 /* ---- The state before each sensor: what is there now, since when, and why nothing is known ---- */
 
@@ -365,11 +368,11 @@ enum {
 const char *eeruf_state_name(uint8_t kind); /* "clear"; not linked unless called */
 
 typedef struct EerufState {
-    uint32_t t_echo_us;   /* of an obstacle, else EERUF_NO_ECHO */
-    uint32_t age_us;      /* since it was last confirmed, or for which nothing is known or answered; stops at 2^31 */
+    uint32_t t_echo_us;   /* echo time of an obstacle, else EERUF_NO_ECHO */
+    uint32_t age_us;      /* time since the last confirmation, or without knowledge or answer; at most 2^31 */
     uint8_t kind;         /* EERUF_STATE_.. */
-    uint8_t why;          /* EERUF_WHY_.. of EERUF_STATE_UNKNOWN */
-    uint8_t explained_by; /* as in the reading */
+    uint8_t why;          /* for EERUF_STATE_UNKNOWN: EERUF_WHY_.. */
+    uint8_t explained_by; /* the explanation, as in the reading */
 } EerufState;
 
 /* One sensor of a watch: 10 bytes on an AVR. Not for the caller. */
@@ -386,8 +389,8 @@ typedef struct EerufWatch {
     uint8_t count;
 } EerufWatch;
 
-/* Begins with a state of each sensor. Nothing is known yet. Again with each eeruf_ring_restart: after a long sleep the
-   clock may have come round, so that an old state would pass for a young one. Where it jumps back all is forgotten. */
+/* Starts a watch that knows nothing yet. Call it again with each eeruf_ring_restart: after a long sleep the clock
+   may have wrapped, and an old state would pass for a young one. If the clock jumps back, all states are forgotten. */
 EerufStatus eeruf_watch_init(EerufWatch *watch, size_t watch_size, EerufWatched *sensors, size_t sensors_size,
                              uint32_t now_us);
 /* Takes in an event of a poll at `now_us`: every one, or at least readings and ends of periods. One reading that does
@@ -397,7 +400,7 @@ EerufStatus eeruf_watch_state(const EerufWatch *watch, uint8_t sensor, uint32_t 
 
 /* ---- Pace: whether the loop comes often enough ---- */
 
-/* Begin with {0}. Not for the caller. */
+/* The pace of a loop; initialise it with {0}. Not for the caller. */
 typedef struct EerufPace {
     uint32_t heard, twice, since_us; /* sensors with a reading that is not late since then, and with two in a row */
     bool late;
@@ -419,8 +422,8 @@ uint32_t eeruf_distance_mm(uint32_t t_echo_us, uint32_t c_mm_s); /* c t / 2, to 
 typedef struct EerufEdge {
     uint32_t at_us;    /* when it was seen */
     uint8_t sensor;    /* 0 to 127 */
-    bool high;         /* whether the line rose */
-    uint8_t early;     /* by how much sooner it may have come: in units of 8 us to 127, then of 256; 255 for any time */
+    bool high;         /* true if the line rose */
+    uint8_t early;     /* time by which it may have come sooner: units of 8 us to 127, then of 256; 255: any time */
 } EerufEdge;
 
 /* `places` is memory of yours for 2, 4, 8, .. or 128 edges. */
@@ -428,16 +431,17 @@ typedef struct EerufEdges {
     uint16_t ready;
     EerufEdge *places;
     uint8_t mask;
-    volatile uint8_t pushed, popped, lost; /* `lost`: how many found the queue full; wraps at 256 */
+    volatile uint8_t pushed, popped, lost; /* `lost`: edges that found the queue full; wraps at 256 */
 } EerufEdges;
 
 EerufStatus eeruf_edges_init(EerufEdges *edges, size_t edges_size, EerufEdge *places, size_t places_size);
-/* From one interrupt, or several that do not interrupt one another. */
+/* Adds an edge. Call it from one interrupt, or from several that do not interrupt one another. */
 EerufStatus eeruf_edges_push(EerufEdges *edges, uint8_t sensor, bool high, uint32_t at_us);
-/* From one that was held off: when the line was last known not to have changed, and when it was seen. */
+/* Adds an edge from a delayed interrupt: the instants when the line was last seen unchanged, and when the edge was
+   seen. */
 EerufStatus eeruf_edges_push_between(EerufEdges *edges, uint8_t sensor, bool high, uint32_t earliest_us,
                                      uint32_t latest_us);
-/* From the main loop. EERUF_EMPTY if none waits. */
+/* Takes the oldest edge, in the main loop. EERUF_EMPTY if there is none. */
 EerufStatus eeruf_edges_pop(EerufEdges *edges, EerufEdge *edge);
 
 /* ---- HC-SR04 and relatives: a trigger, and an echo line that is high for as long as the echo took ---- */
@@ -454,21 +458,21 @@ enum {
 /* The modules' times, in microseconds: EERUF_HC_SR04, or EERUF_MODULES of a table whose ring file names them. */
 typedef struct EerufHcSr04Settings {
     uint16_t version;          /* EERUF_VERSION */
-    uint16_t deaf_us;          /* edges sooner after the trigger are the trigger itself, seen through the cable */
+    uint16_t deaf_us;          /* edges sooner than this after the trigger are the trigger, seen through the cable */
     uint16_t shortest_us;      /* shorter pulses are no echoes */
-    uint16_t latest_rise_us;   /* a line that rises later after the trigger was not raised by it: exchanged wires */
+    uint16_t latest_rise_us;   /* a line that rises later than this was not raised by the trigger: swapped wires */
     uint32_t longest_us;       /* pulses as long as this are the module's own time-out: no echo */
-    uint32_t longest_hold_us;  /* a line that rose and is high no longer than this listens still: clones hold 200 ms */
+    uint32_t longest_hold_us;  /* a line that is high no longer than this still listens: clones hold it for 200 ms */
     uint32_t min_retrigger_us; /* the data sheet advises 60 ms */
     uint8_t missing_after;     /* firings in a row without a pulse, after which a module counts as missing */
-    uint8_t trigger_us;        /* how long the trigger is high; for whoever raises it */
+    uint8_t trigger_us;        /* time for which the caller raises the trigger */
 } EerufHcSr04Settings;
 #define EERUF_HC_SR04 {EERUF_VERSION, 100, 100, 1400, 36000, 250000, 60000, 3, 10}
 
 /* One echo line: 8 bytes on an AVR. Not for the caller. */
 typedef struct EerufLine {
-    uint32_t rose_us;  /* before it rises, when it was last seen low */
-    uint16_t width_us; /* of the pulse that is over; before, from its rise to when it was last seen high */
+    uint32_t rose_us;  /* instant of its rise; before that, when it was last seen low */
+    uint16_t width_us; /* width of the last pulse; during one, from its rise to when it was last seen high */
     uint8_t state, silent;
 } EerufLine;
 
@@ -485,9 +489,9 @@ typedef struct EerufHcSr04 {
    must last. */
 EerufStatus eeruf_hc_sr04_init(EerufHcSr04 *modules, size_t modules_size, EerufLine *lines, size_t lines_size,
                                EerufRing *ring, const EerufHcSr04Settings *settings);
-/* For each EERUF_EVENT_FIRE, before the next poll: whether the echo line is high. EERUF_OK: now raise the trigger for
-   the settings' trigger_us. EERUF_DO_NOT_TRIGGER: leave it alone; the line is stuck, or the module has heard nothing
-   yet and holds it. With one pin for both, read it before it is an output. */
+/* Begins a firing: call it for each EERUF_EVENT_FIRE, before the next poll, with the level of the echo line.
+   EERUF_OK: now raise the trigger for the settings' trigger_us. EERUF_DO_NOT_TRIGGER: leave it alone; the line is
+   stuck, or the module has heard nothing yet and holds it. With one pin for both, read it before it is an output. */
 EerufStatus eeruf_hc_sr04_fire(EerufHcSr04 *modules, uint8_t sensor, bool line_is_high);
 /* True after EERUF_DO_NOT_TRIGGER for a line that is stuck, not for a module that still listens. Some modules hold their
    line for ever after a lost echo, until it is pulled low: if its pin can drive, and a resistor of 1 kOhm in the line
@@ -495,30 +499,32 @@ EerufStatus eeruf_hc_sr04_fire(EerufHcSr04 *modules, uint8_t sensor, bool line_i
    EERUF_READING_STUCK all the same; the next firing triggers the module if its line stays low. */
 bool eeruf_hc_sr04_is_stuck(const EerufHcSr04 *modules, uint8_t sensor);
 #define EERUF_RECOVERY_US 200
-/* Instead, if a timer or other hardware has triggered it. A module whose line has not been seen to fall holds it still. */
+/* Replaces eeruf_hc_sr04_fire where a timer or other hardware triggers the module. If its line was not seen to fall,
+   the module still holds it. */
 EerufStatus eeruf_hc_sr04_triggered(EerufHcSr04 *modules, uint8_t sensor);
-/* A pin could not be read before the trigger (then nothing is triggered), or written at it. */
+/* Reports that a pin could not be read before the trigger (then nothing is triggered), or not written. */
 EerufStatus eeruf_hc_sr04_cannot_read(EerufHcSr04 *modules, uint8_t sensor);
 EerufStatus eeruf_hc_sr04_cannot_write(EerufHcSr04 *modules, uint8_t sensor);
-/* An edge of an echo line. Hand in all edges you have before you poll. */
+/* Reports an edge of an echo line. Hand in all edges before you poll. */
 EerufStatus eeruf_hc_sr04_edge(EerufHcSr04 *modules, uint8_t sensor, bool high, uint32_t at_us);
-/* One that came between two instants: see eeruf_ring_echo_between. What rise and fall are off by adds up. */
+/* Reports an edge between two instants: see eeruf_ring_echo_between. The uncertainties of rise and fall add up. */
 EerufStatus eeruf_hc_sr04_edge_between(EerufHcSr04 *modules, uint8_t sensor, bool high, uint32_t earliest_us,
                                        uint32_t latest_us);
-/* Instead, for those who sample lines: a look at one, with the clock before and after it, edge or not. An edge came
-   between this look and the one before. */
+/* Reports a sample of a line instead of edges, with the clock before and after it, changed or not. An edge came
+   between this sample and the one before. */
 EerufStatus eeruf_hc_sr04_look(EerufHcSr04 *modules, uint8_t sensor, bool high, uint32_t before_us, uint32_t after_us);
-/* All edges of a queue; or those that are not later than an instant, such as that of a timer's trigger. */
+/* Takes all edges of a queue, or those not later than an instant, such as that of a timer's trigger. */
 EerufStatus eeruf_hc_sr04_edges(EerufHcSr04 *modules, EerufEdges *edges);
 EerufStatus eeruf_hc_sr04_edges_until(EerufHcSr04 *modules, EerufEdges *edges, uint32_t until_us);
-/* The width of a module's pulse, from hardware that measures it: instead of edges, before the reading is emitted. */
+/* Takes the width of a module's pulse instead of edges, from hardware that measures it, before the reading is
+   emitted. */
 EerufStatus eeruf_hc_sr04_pulse(EerufHcSr04 *modules, uint8_t sensor, uint32_t width_us);
 /* True if the line of a sensor is worth a look: it was triggered, and its pulse is not over. `was_high`, if not null: the
    level it had last. */
 bool eeruf_hc_sr04_awaits(const EerufHcSr04 *modules, uint8_t sensor, bool *was_high);
-/* As eeruf_ring_fired, where the trigger was given later than the poll said. */
+/* Corrects a firing like eeruf_ring_fired, where the trigger came later than the poll said. */
 EerufStatus eeruf_hc_sr04_fired(EerufHcSr04 *modules, uint8_t sensor, uint32_t at_us);
-/* The health of a module at its last complete firing; EERUF_HEALTH_MISSING for one that is not there. */
+/* The health of a module at its last complete firing; EERUF_HEALTH_MISSING for one out of range. */
 uint8_t eeruf_hc_sr04_health(const EerufHcSr04 *modules, uint8_t sensor);
 
 /* ---- Flow: one sensor after the other, each with as much quiet around its firing as it has needed ----
@@ -534,21 +540,21 @@ typedef struct EerufFlowConfig {
     uint8_t sensors;         /* 1 to 64 */
     uint32_t window_us, blanking_us; /* as a ring's */
     uint32_t least_us;       /* the least time from a firing to the next; equal to most_us: one by one */
-    uint32_t most_us;        /* R: the most, and how long sound is heard, its tail included; at most 250 ms */
-    uint32_t rest_us;        /* between two firings of a sensor, for which its module rests; at most 4 s */
+    uint32_t most_us;        /* R: the greatest time, and how long sound is heard, its tail included; at most 250 ms */
+    uint32_t rest_us;        /* least time between two firings of a sensor, for its module to rest; at most 4 s */
     uint32_t dice_us;        /* random time in every gap, twice as long while the robot moves; at least 8 ticks of the
                                 clock, at most 250 ms */
-    uint32_t seed;           /* of the dice, not 0: another one for each robot, as its chip's number */
-    uint16_t t_delta_us;     /* by how much two readings in a row may differ, of a robot that stands */
-    uint16_t near_us;        /* by how much a reading may differ from what is believed; at most 10 ms */
-    uint16_t path_change_us; /* P: of a robot that stands */
-    uint8_t memory;          /* firings without belief after which it keeps nothing alive */
-    uint8_t hold;            /* contradictions that a belief outlasts, of a robot that stands; 1 to 100 */
-    uint16_t top_speed_mm_s; /* holds where nobody says how fast the robot moves; 0: it stands */
-    uint8_t alone;           /* no other robot sends sound here */
+    uint32_t seed;           /* seed of the random time, not 0: different on each robot, such as its chip's number */
+    uint16_t t_delta_us;     /* greatest difference of two consecutive readings that agree, while standing */
+    uint16_t near_us;        /* greatest difference of a reading from the belief; at most 10 ms */
+    uint16_t path_change_us; /* P, while standing */
+    uint8_t memory;          /* firings without confirmation after which a belief ends */
+    uint8_t hold;            /* contradictions that a belief outlasts while standing; 1 to 100 */
+    uint16_t top_speed_mm_s; /* assumed speed without eeruf_flow_moving; 0: it stands */
+    uint8_t alone;           /* true if no other robot sends sound nearby */
     uint8_t votes;           /* EERUF_VOTES_.. */
-    const EerufSchedule *own; /* limits, where sensors are not all alike, as `eeruf` writes them; or null */
-    const uint8_t *lines;    /* in flash as `own`: the echo line that each sensor shares, from 1, or 0; or null */
+    const EerufSchedule *own; /* limits of each sensor, as `eeruf` writes them, if they differ; or null */
+    const uint8_t *lines;    /* the echo line that each sensor shares, from 1, or 0, in flash like `own`; or null */
 } EerufFlowConfig;
 
 /* The number of echoes in a row that makes one accepted. */
@@ -574,7 +580,7 @@ typedef struct EerufFlowSensor {
 
 /* A flow ring. Not for the caller. */
 typedef struct EerufFlowRing {
-    EerufRing ring; /* the first: pointers to one are pointers to the other */
+    EerufRing ring; /* first, so that a pointer to one is a pointer to the other */
     const uint8_t *lines;
     uint32_t random, thrown_us, dice_us, rest_us, told_us, since_us, least_us;
     uint16_t most, first, up, down, near_us, rate, top_rate, greatest[2];
@@ -593,13 +599,13 @@ EerufStatus eeruf_flow_poll(EerufFlowRing *flow, uint32_t now_us, EerufEvent *ev
 /* Says how fast the robot moves and turns, both without a sign, once a control cycle: readings may change by as much. After
    half a second without a word the top speed holds. */
 EerufStatus eeruf_flow_moving(EerufFlowRing *flow, uint32_t speed_mm_s, uint32_t turn_mrad_s, uint32_t now_us);
-/* As the functions of a ring. */
+/* Work like the functions of a ring. */
 EerufStatus eeruf_flow_enable(EerufFlowRing *flow, uint8_t sensor, bool enabled);
 EerufStatus eeruf_flow_pause(EerufFlowRing *flow, bool paused);
 EerufStatus eeruf_flow_restart(EerufFlowRing *flow, uint32_t now_us);
-/* The quiet that a sensor gets before its firing and after it; 0 for one that is not there. */
+/* The quiet that a sensor gets before its firing and after it; 0 for one out of range. */
 uint32_t eeruf_flow_quiet_us(const EerufFlowRing *flow, uint8_t sensor);
-/* The echo time that is believed of a sensor; EERUF_NO_ECHO if none is, or nothing is in range. */
+/* The echo time believed of a sensor; EERUF_NO_ECHO without a belief, or if nothing is in range. */
 uint32_t eeruf_flow_believed_us(const EerufFlowRing *flow, uint8_t sensor);
 
 #ifdef __cplusplus

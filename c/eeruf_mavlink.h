@@ -1,5 +1,5 @@
 /*
- * What a ring says to an autopilot over a serial line, in MAVLink 2: OBSTACLE_DISTANCE of the whole ring,
+ * Messages of a ring to an autopilot over a serial line, in MAVLink 2: OBSTACLE_DISTANCE of the whole ring,
  * DISTANCE_SENSOR of sensors that a named rotation stands for, and HEARTBEAT, SYS_STATUS and STATUSTEXT of sensors that
  * fail. What autopilots make of it: docs/how-to/autopilots.md.
  *
@@ -28,7 +28,7 @@
 
 /* The time from one message to the next: at 57,600 baud the longest takes 31 ms. */
 #define EERUF_MAVLINK_PACE_US 20000u
-/* A state that was not confirmed for as long is not known. */
+/* Time after which an unconfirmed state counts as unknown. */
 #define EERUF_MAVLINK_OLD_US 1000000u
 #define EERUF_MAVLINK_HEARTBEAT 50 /* the byte by which sender and receiver know that they mean the same fields */
 
@@ -118,7 +118,7 @@ static inline uint16_t eeruf_mavlink_cm(const EerufMavlink *link, const EerufWat
     return cm < link->min_cm ? link->min_cm : (uint16_t)cm;
 }
 
-/* The nearest that sensors see in each sector of 5 degrees; then what one does not know; free is what all call so. */
+/* Sends the nearest obstacle of each sector of 5 degrees; without one, unknown if any sensor there is, else free. */
 static inline void eeruf_mavlink_obstacles(EerufMavlink *link, const EerufWatch *watch) {
     uint16_t sectors[72] = {0};
     uint8_t sector, x, unanswered;
@@ -224,8 +224,8 @@ static inline void eeruf_mavlink_next(EerufMavlink *link, const EerufWatch *watc
     }
 }
 
-/* Bytes to write now, at most as many as there is room for, and where they are until the next call. The watch takes in
-   the events of the ring. */
+/* Gives the bytes to write now, at most as many as there is room for; they stay in place until the next call. The
+   watch takes in the events of the ring. */
 static inline size_t eeruf_mavlink_take(EerufMavlink *link, const EerufWatch *watch, uint32_t now_us, size_t room,
                                         const uint8_t **bytes) {
     size_t size;

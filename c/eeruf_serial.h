@@ -1,5 +1,5 @@
 /*
- * What a ring says over a serial line: one frame for each firing, for eeruf-ros2 and `eeruf diagnose`. Byte by byte:
+ * The frames of a ring on a serial line: one for each firing, for eeruf-ros2 and `eeruf diagnose`. Byte by byte:
  * docs/reference/serial.md.
  *
  *     uint16_t late_us[8];

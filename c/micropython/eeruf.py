@@ -206,7 +206,9 @@ class FlowRing:
             self._due = due
 
     def upcoming(self):
-        """The next firing, (sensor, instant), in a list, for hardware that fires by itself; none if the round ends first."""
+        """Return the next firing as a list of one (sensor, instant), for hardware that fires by itself; empty if the
+        round ends first.
+        """
         return [] if self._next == NOBODY else [(self._next, self._due)]
 
     def _set_moves(self):  # takes in the rate that holds now
@@ -314,7 +316,7 @@ class FlowRing:
         return any(age <= self.flow.most_us for age in ages)
 
     def believed_us(self, x):
-        """The echo time that is believed of a sensor; None if none is, or nothing is in range."""
+        """Return the echo time believed of a sensor; None without a belief, or if nothing is in range."""
         sensor = self._sensors[x]
         return sensor.believed_us if sensor.missed <= self.flow.memory and sensor.believed_us != _SILENCE else None
 
@@ -322,7 +324,7 @@ class FlowRing:
         return self._pending > 0 or self._oldest != NOBODY
 
     def poll(self, now_us):
-        """The next event, or None: then sleep until the deadline. Hand in the echoes you know of before."""
+        """Return the next event, or None: then sleep until the deadline. First hand in the echoes you know of."""
         is_due = self._reached(now_us, self._due)
         if not is_due and not (self._pends() and self._reached(now_us, self._emit_at)):
             if (self._due - now_us) & self._mask > self._horizon:
@@ -455,7 +457,9 @@ class FlowRing:
         return self._long_ago < (now_us - at_us) & self._mask <= self._mask - self._step_back
 
     def echo(self, x, earliest_us, latest_us=None):
-        """An echo at this instant, or between two: the middle counts. More than 300 us off either way, 5 cm, it is LATE, without a time."""
+        """Report an echo at an instant, or between two: the middle counts. If it may be off by more than 300 us, 5 cm,
+        it is LATE, without a time.
+        """
         sensor, flow, latest_us = self._sensors[x], self.flow, earliest_us if latest_us is None else latest_us
         width = (latest_us - earliest_us) & self._mask
         if width >= self._half:
@@ -521,15 +525,17 @@ class FlowRing:
             sensor.evidence = evidence
 
     def stuck(self, x):
-        """The echo line of a sensor was high when it was to be fired."""
+        """Report that a sensor's echo line was high when it was to fire."""
         self._show(x, _STUCK)
 
     def holds(self, x):
-        """A sensor holds its line: it rose after the trigger, or is high still. Its silence counts once, when that has fallen: `answered`."""
+        """Report that a sensor holds its line: it rose after the trigger, or is still high. Its silence counts once,
+        when the line has fallen: `answered`.
+        """
         self._show(x, _HELD)
 
     def answered(self, x, answered=True):
-        """A sensor has shown that it listened, or what looked like that was a disturbance; else see `silence`."""
+        """Report that a sensor has shown that it listened, or that this was a disturbance; else see `silence`."""
         sensor, evidence = self._sensors[x], self._sensors[x].evidence
         if not answered:
             self._show(x, _NOTHING)
@@ -539,7 +545,8 @@ class FlowRing:
                 self._judge(x, sensor, None, sensor.firings[0])  # its reading is out
 
     def measured(self, x, least_us, most_us=None):
-        """Takes what hardware measured of a sensor's last firing: the echo time, two that it is between, or None for silence."""
+        """Takes what hardware measured of a sensor's last firing: the echo time, two values around it, or None for
+        silence."""
         if least_us is None:
             self.answered(x)
         else:
@@ -678,7 +685,7 @@ class HcSr04FlowRing:
         self.ring.moving(speed_mm_s, turn_mrad_s, self._time.ticks_us())
 
     def read(self):
-        """One step; a reading if there is one, else None."""
+        """Take one step; return a reading if there is one, else None."""
         now = self._time.ticks_us()  # before the lines, so that no window closes on an edge that came in time
         self._sample(now)
         event = self.ring.poll(now)
@@ -692,7 +699,9 @@ class HcSr04FlowRing:
         return event
 
     def too_slow(self):
-        """True about once a second if `read` comes too seldom: a module had no two readings in a row that are not late."""
+        """Return true about once a second if `read` is called too seldom: a module had no two readings in a row that
+        are not late.
+        """
         now, twice = self._time.ticks_us(), self._twice
         if self._time.ticks_diff(now, self._since) < 950000:
             return False

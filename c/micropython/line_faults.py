@@ -17,7 +17,7 @@ class Fault:
 
 
 def read(text):
-    """The file: (period, firing times of each phase, faults)."""
+    """Return the file's (period, firing times of each phase, faults)."""
     rows = [line.split("|") for line in text.strip().split("\n") if not line.startswith("#")]
     times = [[int(us) for us in phase.split()] for phase in rows[0][2:]]
     return int(rows[0][1]), times, [Fault(row) for row in rows[1:]]
@@ -29,7 +29,7 @@ def cell(right, count, lies):
 
 
 def with_column(document, column, cells):
-    """The document whose table has these cells, by name and surroundings, in this column."""
+    """Return the document with these cells, by name and surroundings, in a column of its table."""
     rows, left = [line.split("|") for line in document.split("\n")], dict(cells)
     at = [[cell.strip() for cell in row].index(column) for row in rows if row[1:2] == [" fault "]][0]
     for row in rows:

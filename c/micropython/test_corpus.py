@@ -30,7 +30,7 @@ def flat(event):
 
 
 def play(ring, what, n):
-    """Performs a line of the corpus on a ring: (actual result, expected result)."""
+    """Perform a line of the corpus on a ring; return (actual result, expected result)."""
     if what == "P":
         event = flat(ring.poll(n[0]))
         # Its end of a round does not say how late firings were.

@@ -1,6 +1,7 @@
 """A HcSr04FlowRing, which samples lines, and faults of one of them: python3 test_line_faults.py.
 
-Free space is never said without evidence, and each state is right after two readings. It runs under MicroPython too."""
+Free space is never reported without evidence, and each state is right after two readings. It runs under MicroPython
+too."""
 
 from eeruf import ACCEPTED, CLEAR, KIND, SENSOR, STUCK, T_ECHO, Flow, HcSr04FlowRing
 from line_faults import FAULTY, cell, read, with_column
@@ -64,7 +65,7 @@ class Board:
             self.levels[line] = False
 
     def look(self, line):
-        """The level of a line. Of two edges that have just come only the first, so that a look hits every gap."""
+        """Return a line's level. Of two edges that have just come only the first counts, so that a look hits every gap."""
         due = [edge for edge in self.ahead if edge[1] == line and edge[0] <= self.now]
         for edge in due:
             self.ahead.remove(edge)
@@ -130,7 +131,7 @@ def run(fault, kind=HcSr04FlowRing, onset_us=0):
 
 
 def check_walls(fault, step_us, **settings):
-    """Modules on one pin each before walls: 97 % accepted, by looks that are so far apart, and counted from the trigger."""
+    """Check modules on one pin each before walls: 97 % accepted, with samples this far apart, timed from the trigger."""
     board, readings = Board(fault, step_us), []
     ring = HcSr04FlowRing(Flow(4, 25000, seed=1, **settings), [0, 1, 2, 3], machine=board, time=board)
     while len(readings) < 200:
@@ -161,7 +162,7 @@ def is_right(said, says):
 
 
 def check(text):
-    """The table's cells, by name and surroundings."""
+    """Check the table's cells, by name and surroundings."""
     faults, cells = read(text)[2], {}
     check_walls(faults[0], 10)
     check_walls(faults[0], 100, t_delta_us=600, near_us=700)
@@ -184,8 +185,9 @@ def check(text):
 
 
 def check_held(text):
-    """A line before a wall that sticks high at any time: never clear; and one that is held until it is pulled low: stuck once, then a
-    wall."""
+    """Check a line before a wall that sticks high at any time (never clear), and one that is held until it is pulled
+    low (stuck once, then a wall).
+    """
     held = [fault for fault in read(text)[2] if fault.name == "held for ever"][0]
     for onset_us in range(500000, 2500000, 95239):  # all over the 100 ms between two firings
         readings, _ = run(held, onset_us=onset_us)
@@ -200,7 +202,7 @@ def check_held(text):
 
 
 def main(text, document):
-    """The document whose table has what was said."""
+    """Return the document with the results in its table."""
     cells = check(text)
     check_held(text)
     print("%d faults of a line: never clear without evidence" % len(cells))

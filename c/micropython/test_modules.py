@@ -1,4 +1,4 @@
-"""Settings of rings. What rings do stands in the corpus, and what modules do beside the faults of a line."""
+"""Tests of settings. Rings are tested by the corpus, modules by the faults of a line."""
 
 import sys
 

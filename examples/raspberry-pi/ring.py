@@ -1,6 +1,7 @@
-"""A ring of HC-SR04 modules on the pins of a Raspberry Pi: ``python ring.py`` prints what is before each, once a second.
+"""A ring of HC-SR04 modules on the pins of a Raspberry Pi: ``python ring.py`` prints what is before each, once a
+second.
 
-The kernel stamps the edges of the echo lines, so that a loop which comes late loses no accuracy of echoes. Needs the
+The kernel stamps the edges of the echo lines, so that a late loop does not make echo times less accurate. Needs the
 packages ``eeruf`` and ``gpiod``.
 """
 
@@ -64,7 +65,7 @@ class Modules:
         self.fired_us[sensor] = self.now_us()
 
     def take(self, ring: eeruf.Ring, timeout_us: int = 0) -> None:
-        """Hand the ring what the edges say that have come, or the first that comes within this time."""
+        """Hand the ring the edges that have come, or wait this long for the first one."""
         if not self.echoes.wait_edge_events(timeout_us / 1e6):
             return
         for event in self.echoes.read_edge_events():
@@ -85,7 +86,7 @@ class Modules:
 
 
 def run(ring: eeruf.Ring, modules: Modules, each: Callable[[eeruf.Reading | eeruf.PeriodEnded], bool]) -> None:
-    """Fire and listen until ``each`` returns false, which takes readings and ends of periods."""
+    """Fire and listen; ``each`` gets readings and ends of periods, until it returns false."""
     while True:
         now_us = modules.now_us()
         modules.take(ring)  # after the clock is read: no window closes on an edge that came in time

@@ -1,6 +1,6 @@
-//! The C library in `c/`, behind safe functions of numbers, and what compares it with the Rust crates: rings of each
-//! kind that both run, given the same random numbers, and that must say the same. The tests draw the numbers from
-//! seeds, the fuzz target from bytes.
+//! Safe wrappers of the C library in `c/`, and its comparison with the Rust crates: rings of each kind run in both
+//! languages on the same random numbers and must give the same results. Tests draw the numbers from seeds, the fuzz
+//! target takes them from bytes.
 //!
 //! Nothing here is for others: firmware in Rust uses `eeruf-core`, firmware in C uses `c/eeruf.h`.
 
@@ -108,7 +108,7 @@ impl Drop for C {
 }
 
 impl C {
-    /// Makes one without a ring or schedules.
+    /// Makes a C side without a ring or schedules.
     pub fn new() -> Self {
         // SAFETY: takes nothing.
         Self(unsafe { shim::shim_new() })
@@ -135,7 +135,7 @@ impl C {
     /// A schedule that was verified, as a table.
     ///
     /// # Panics
-    /// If C does not find it so.
+    /// If C does not verify it.
     pub fn verified_schedule<const K: usize>(&mut self, number: u32, schedule: &VerifiedSchedule<K>) {
         self.schedule(schedule.schedule());
         assert_eq!(self.verified(number, Claim::of(schedule.verified_for()), &[]), 0);
@@ -272,7 +272,7 @@ pub fn distance_mm(t_echo_us: u32, c_mm_s: u32) -> u32 {
 pub struct Edges;
 
 impl Edges {
-    /// Empties it.
+    /// Empties the queue.
     pub fn new() -> Self {
         // SAFETY: its memory is C's own.
         unsafe { shim::shim_edges_new() };

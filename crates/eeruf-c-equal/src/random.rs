@@ -12,7 +12,7 @@ pub struct Random(Source);
 enum Source {
     /// SplitMix64 (Steele, Lea and Flood, 2014): the seed and the state.
     Seed(u64, Cell<u64>),
-    /// Bytes, and how many of them were taken. Clones take from the same.
+    /// Bytes, and the number taken so far; clones share both.
     Bytes(Rc<[u8]>, Rc<Cell<usize>>),
 }
 
@@ -46,7 +46,7 @@ impl Random {
         self.any_of(8)
     }
 
-    /// Any number; bytes give only this many of its lowest.
+    /// Any number; a byte source fills only its lowest `count` bytes.
     fn any_of(&self, count: usize) -> u64 {
         match &self.0 {
             Source::Seed(_, state) => {

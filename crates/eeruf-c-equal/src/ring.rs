@@ -34,8 +34,8 @@ impl Needs {
 
 /// Verification, for schedules of two phases only.
 pub trait Verify: Sized {
-    /// Verifies in Rust, which C must find so or not, and gives back the schedule, verified if it can be, and what it
-    /// allows each sensor.
+    /// Verifies in Rust, checks that C agrees, and returns the schedule, verified if possible, with the limits of each
+    /// sensor.
     fn verify_as(self, c: &mut C, number: u32, needs: Needs, own: &[OwnNeeds]) -> (Self, EachSensor<K>);
 }
 

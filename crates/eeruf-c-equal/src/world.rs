@@ -84,7 +84,7 @@ impl World {
     }
 }
 
-/// Asks C and compares with whether Rust found the sensor.
+/// Makes the same call in C, and checks that both sides accept or refuse the sensor.
 ///
 /// # Panics
 /// Where they differ.

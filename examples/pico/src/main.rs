@@ -1,5 +1,5 @@
 //! Eight HC-SR04 modules on a Raspberry Pi Pico, one on each state machine of its two PIOs. They fire and time the
-//! echoes by themselves; the main task tells them when, and says over USB what each of them sees.
+//! echoes by themselves; the main task schedules them, and reports over USB what each module sees.
 #![no_std]
 #![no_main]
 
@@ -39,13 +39,13 @@ fn now() -> Instant {
     Instant::from_micros(embassy_time::Instant::now().as_micros() as u32)
 }
 
-/// Sends what is logged to the computer at the other end of the USB cable.
+/// Sends log messages to the computer at the other end of the USB cable.
 #[embassy_executor::task]
 async fn log_over_usb(driver: Driver<'static, USB>) {
     embassy_usb_logger::run!(1024, log::LevelFilter::Info, driver);
 }
 
-/// The FIFOs of a state machine, whichever it is.
+/// The FIFOs of any state machine.
 trait Fifos {
     fn push(&mut self, word: u32);
     fn pull(&mut self) -> Option<u32>;

@@ -89,8 +89,8 @@ pub(crate) fn pend_echo() {
     nvic(NVIC_SET_PENDING, ECHO_IRQ);
 }
 
-/// Sleeps until the next interrupt, unless `awake` says that there is something to do. No interrupt can come between
-/// that answer and the sleep: it is held back until the sleep instruction, which then does not sleep.
+/// Sleeps until the next interrupt, unless `awake` returns true. No interrupt can come between that call and the sleep:
+/// it is held back until the sleep instruction, which then does not sleep.
 pub fn sleep_unless(awake: impl FnOnce() -> bool) {
     cortex_m::interrupt::disable();
     if !awake() {
@@ -106,7 +106,7 @@ pub mod device {
 
     use crate::chip::{ALARM_IRQ, ECHO_IRQ, SPARE_IRQ};
 
-    /// Number of bits of an interrupt's priority that count.
+    /// Number of significant bits of an interrupt's priority.
     pub const NVIC_PRIO_BITS: u8 = crate::chip::NVIC_PRIO_BITS;
 
     /// The interrupts in use.
@@ -131,6 +131,6 @@ pub mod device {
 
     /// The interrupts under the name that RTIC expects.
     pub use Interrupt as interrupt;
-    /// The peripherals under the name that frameworks expect; there are no more to hand out.
+    /// The peripherals under the name that frameworks expect; no others exist to hand out.
     pub use cortex_m::Peripherals;
 }

@@ -125,7 +125,7 @@ impl OutputPin for Trigger {
         Ok(())
     }
 
-    /// An HC-SR04 measures from the falling edge of its trigger.
+    /// Triggers the module: an HC-SR04 measures from the falling edge of its trigger.
     fn set_low(&mut self) -> Result<(), Infallible> {
         trigger(self.0.into());
         Ok(())

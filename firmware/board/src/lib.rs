@@ -1,4 +1,4 @@
-//! The least a firing ring needs of a board, for four boards that QEMU emulates.
+//! The board functions that a ring needs, for four boards that QEMU emulates.
 //!
 //! | board | target | core |
 //! |---|---|---|
@@ -79,7 +79,7 @@ macro_rules! no_panic {
     };
 }
 
-/// A panic handler for images that may fail, such as tests: says where, and leaves with code 101.
+/// A panic handler for images that may fail, such as tests: prints the place, and exits with code 101.
 #[macro_export]
 macro_rules! say_panic {
     () => {

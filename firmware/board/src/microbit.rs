@@ -54,7 +54,7 @@ pub(crate) fn running() -> Micros {
     Micros::new(capture(TIMER0))
 }
 
-/// Sets the alarm, and forgets any other. If `at` has passed it goes off at once.
+/// Sets the alarm in place of any other. If `at` has passed, it goes off at once.
 pub fn set_alarm(at: Instant) {
     Register::at(TIMER0, CC_0).write(at.since(crate::instant_of(Micros::ZERO)).as_micros());
     // The compare register only fires when the counter comes to it.
@@ -68,7 +68,7 @@ pub fn clear_alarm() {
     Register::at(TIMER0, COMPARE_0).write(0);
 }
 
-/// Sets the instant of the next echo interrupt, and forgets any other. If `at` has passed it comes at once.
+/// Sets the instant of the next echo interrupt in place of any other. If `at` has passed, it comes at once.
 pub fn set_echo(at: Instant) {
     let now = crate::now();
     Register::at(TIMER1, STOP).write(1);

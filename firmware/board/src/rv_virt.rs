@@ -1,5 +1,5 @@
 //! QEMU's RISC-V `virt` machine, RV32IMAC. There is one timer with one compare register, which serves both alarm and
-//! echo lines: it is set to the earlier of the two, and its handler asks which of them has come.
+//! echo lines: it is set to the earlier of the two, and its handler determines which of them is due.
 
 use core::cell::Cell;
 use core::ptr::{read_volatile, write_volatile};
@@ -87,7 +87,7 @@ impl Timers {
     }
 }
 
-/// Returns which of alarm and echo has come, for the handler.
+/// Returns true for the alarm and for the echo if they are due, for the handler.
 pub fn due() -> (bool, bool) {
     critical_section::with(|token| {
         let timers = TIMERS.borrow(token);
@@ -134,8 +134,8 @@ pub fn count() -> u32 {
     riscv::register::minstret::read() as u32
 }
 
-/// Sleeps until the next interrupt, unless `awake` says that there is something to do. No interrupt can come between
-/// that answer and the sleep: it is held back until the sleep instruction, which then does not sleep.
+/// Sleeps until the next interrupt, unless `awake` returns true. No interrupt can come between that call and the sleep:
+/// it is held back until the sleep instruction, which then does not sleep.
 pub fn sleep_unless(awake: impl FnOnce() -> bool) {
     riscv::interrupt::disable();
     if !awake() {

@@ -90,7 +90,7 @@ impl Write for Debugger {
     }
 }
 
-/// Says where and why the program panicked, and leaves with code 101.
+/// Prints where and why the program panicked, and exits with code 101.
 pub fn panicked(info: &PanicInfo<'_>) -> ! {
     // Nothing can be done about a debugger that does not listen.
     let _ = writeln!(Debugger, "{info}");

@@ -24,7 +24,7 @@ struct Clock {
     wraps: Cell<u32>,
 }
 
-/// SysTick at the last reading, and how often it had wrapped.
+/// SysTick at the last reading, and its number of wraps.
 static CLOCK: Mutex<Clock> = Mutex::new(Clock { ticks: Cell::new(0), wraps: Cell::new(0) });
 
 pub(crate) fn start() {

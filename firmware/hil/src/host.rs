@@ -36,7 +36,7 @@ impl Host {
         (Self(RefCell::new(pipes)), Orders::from_words(words.map(u32::from_le_bytes)))
     }
 
-    /// Queues a record, which is sent when the buffer is full at the latest.
+    /// Queues a record; a full buffer is sent at once.
     pub(crate) fn say(&self, record: Record) {
         let mut pipes = self.0.borrow_mut();
         if pipes.count == KEPT {

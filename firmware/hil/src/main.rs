@@ -1,6 +1,5 @@
 //! A ring of eight HC-SR04 sensors whose surroundings are the simulator on the host, in lock step. The main loop is
-//! that of any other ring, and also reports to the host everything that goes into the ring and everything that comes
-//! out.
+//! that of any other ring, and also reports every input and output of the ring to the host.
 #![no_std]
 #![no_main]
 

@@ -20,7 +20,7 @@ pub(crate) fn echo_interrupt() {
 }
 
 /// Makes a ring and runs it for as many periods as the host orders. `on_event` is called with each event, the instant
-/// of its poll, how the sensors are, and how many edges got lost.
+/// of its poll, the health of the sensors, and the number of lost edges.
 pub(crate) fn run<P: Plan, J: Judge, const H: usize, E>(
     make: impl FnOnce(Instant) -> Result<Ring<P, J, SENSORS, 1, H>, E>,
     mut on_event: impl FnMut(&RingEvent, Instant, &dyn Fn(u8) -> Health, u8),

@@ -1,4 +1,4 @@
-//! The ring of the main program, which also says what it reads over the board's serial line, as a ring on a robot does.
+//! The ring of the main program, which also sends its readings over the board's serial line, like a ring on a robot.
 #![no_std]
 #![no_main]
 

@@ -77,8 +77,8 @@ pub fn counts<R>(call: impl FnOnce() -> R) -> (u32, R) {
     (eeruf_board::count().wrapping_sub(before) & 0x00FF_FFFF, result)
 }
 
-/// A program that has all of `Ring` in it for `K` sensors, in static memory, and nothing else. Its size less that of
-/// the program `bare` is the size of scheduler and filter.
+/// A program with all of `Ring` for `K` sensors in static memory, and nothing else. Its size minus that of the program
+/// `bare` is the size of scheduler and filter.
 #[macro_export]
 macro_rules! ring_in_static_memory {
     ($k:literal) => {

@@ -50,8 +50,8 @@ fn t_echo(sensor: u8, period: u32, noise: u32) -> Option<u32> {
 /// Instructions of each call, the fewest and the most over 400 rounds in which sensors hear their own echoes,
 /// crosstalk, noise and nothing. In the second half the robot moves at 0.3 m/s.
 ///
-/// Prints one line per kind of call: name, fewest, most; last the mean of all readings. `reading_moving` is one of the
-/// second half; `period_ended` begins the next round.
+/// Prints one line per kind of call: name, fewest, most; then the mean of all readings. `reading_moving` is a reading
+/// of the second half; `period_ended` begins the next round.
 pub fn say_calls(ring: &mut FlowRing<12>) {
     // Whatever the compiler knows of where it lies would count as part of the calls.
     let ring = black_box(ring);
@@ -106,8 +106,8 @@ pub fn say_calls(ring: &mut FlowRing<12>) {
     mean.say();
 }
 
-/// Makes a ring like [`ring_in_static_memory!`](crate::ring_in_static_memory), with all of a flow ring in it, which the
-/// compiler makes by `made` and a restart begins.
+/// Makes a ring like [`ring_in_static_memory!`](crate::ring_in_static_memory), with all of a flow ring, which `made`
+/// makes at compile time and a restart begins.
 #[macro_export]
 macro_rules! planned_in_static_memory {
     ($ring:ty, $made:expr) => {

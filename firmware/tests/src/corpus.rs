@@ -13,7 +13,7 @@ use eeruf_on_target::{run, tests};
 eeruf_board::say_panic!();
 eeruf_board::interrupts!(eeruf_board::clear_alarm, eeruf_board::clear_echo);
 
-/// A schedule with the shortest period for what it meets, in ticks.
+/// A schedule with the shortest period for its needs, in ticks.
 struct ShortestPeriod {
     layout: Layout<'static>,
     tick_us: u32,
@@ -100,7 +100,7 @@ fn three_sensors_have_3912_tables_of_waits() {
     assert_eq!(tables, 3912);
 }
 
-/// Walls 0.9 m to 2.8 m away: sensor `x` hears its echo after `5 + x` ms.
+/// Checks a ring with walls 0.9 m to 2.8 m away: sensor `x` hears its echo after `5 + x` ms.
 fn ring_accepts_walls_from_period_two_on_through_a_clock_wrap() {
     let config = RingConfig::new().with_window(Micros::from_millis(36));
     let mut ring: ScheduledRing<12> =

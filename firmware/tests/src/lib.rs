@@ -1,4 +1,4 @@
-//! A test harness for boards: runs named functions, says which one runs, and fails by panic.
+//! A test harness for boards: runs named functions, prints the name of each, and fails by panic.
 #![no_std]
 
 use eeruf_board::{say, say::leave};
@@ -6,7 +6,7 @@ use eeruf_board::{say, say::leave};
 /// A test and its name.
 pub type Test = (&'static str, fn());
 
-/// Runs the tests one after the other and leaves: with 0 if all pass, with 101 from the panic of the first that fails.
+/// Runs the tests one after the other and exits with 0 if all pass, or with 101 from the panic of the first that fails.
 pub fn run(tests: &[Test]) -> ! {
     for (name, test) in tests {
         say!("test ", *name, " ..");
@@ -16,7 +16,7 @@ pub fn run(tests: &[Test]) -> ! {
     leave(0)
 }
 
-/// Names functions after themselves.
+/// Makes a list of tests with the names of their functions.
 #[macro_export]
 macro_rules! tests {
     ($($test:ident),* $(,)?) => {

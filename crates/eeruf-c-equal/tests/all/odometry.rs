@@ -7,14 +7,14 @@ use eeruf_core::{Micros, Phase, ReadingKind, Requirements, tables::TABLE_I_D};
 const SENSORS: usize = 12;
 const PERIOD: u32 = 100_000;
 
-/// When a sensor fires in a period.
+/// Firing time of a sensor in a period.
 fn fires(sensor: usize, period: u32) -> u32 {
     let t_fire = TABLE_I_D.t_fire(Phase((period % 2) as u8), sensor).map_or(0, Micros::as_micros);
     period * PERIOD + t_fire
 }
 
-/// The readings of a sensor that hears one fixed path of another, and is told the change of it: those accepted, and
-/// those ambiguous.
+/// The readings of a sensor that hears another along one fixed path and is told that path's change: the accepted and
+/// the ambiguous.
 fn heard_of(emitter: usize, receiver: u8) -> [usize; 2] {
     let mut c = C::new();
     let requirements = Requirements { window: Micros::new(60_000), ..Requirements::new(Micros::new(999)) };

@@ -1,5 +1,5 @@
-//! Eight HC-SR04 modules on a Raspberry Pi Pico without its PIOs, by flow: one task waits for their lines, and says
-//! over USB what each of them sees.
+//! Eight HC-SR04 modules on a Raspberry Pi Pico without its PIOs, by flow: one task waits for their lines, and reports
+//! over USB what each module sees.
 #![no_std]
 #![no_main]
 

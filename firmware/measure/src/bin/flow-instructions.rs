@@ -1,4 +1,4 @@
-//! Instructions of each call of a flow ring of twelve sensors: see [`say_calls`]. To be run with `-icount shift=10`, as
+//! Instructions of each call of a flow ring of twelve sensors: see [`say_calls`]. Run it with `-icount shift=10`, like
 //! `instructions`.
 #![no_std]
 #![no_main]

@@ -1,6 +1,6 @@
 //! Instructions of each call of a ring of twelve sensors, the fewest and the most over forty periods on time and forty
-//! in which every firing is late. To be run with `-icount shift=10`, where every instruction takes 1024 ns, so that a
-//! hardware timer counts instructions.
+//! in which every firing is late. Run it with `-icount shift=10`: every instruction then takes 1024 ns, and a hardware
+//! timer counts instructions.
 //!
 //! Prints one line per kind of call: name, fewest, most. Call and return count; reading the timer does not.
 #![no_std]

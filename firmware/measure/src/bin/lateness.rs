@@ -1,6 +1,6 @@
-//! Lateness of firings while echoes keep interrupting: twelve sensors, all with an echo, 200 periods. Prints how late
-//! firings were, and how far that shifted crosstalk. Run it at several speeds of the core (`-icount shift=N`: 2^N ns an
-//! instruction).
+//! Lateness of firings while echoes keep interrupting: twelve sensors, all with an echo, 200 periods. Prints the
+//! lateness of firings, and the resulting shift of crosstalk. Run it at several speeds of the core (`-icount shift=N`:
+//! 2^N ns an instruction).
 #![no_std]
 #![no_main]
 

@@ -64,13 +64,13 @@ impl FileError {
         Self { is_full, ..Self::new(file, format!("{error}; {advice}")) }
     }
 
-    /// Adds a line, counted from 1.
+    /// Adds the line of the error, counted from 1.
     #[must_use]
     pub fn at_line(self, line: Option<u64>) -> Self {
         Self { line, ..self }
     }
 
-    /// Adds a byte, counted from 0.
+    /// Adds the byte of the error, counted from 0.
     #[must_use]
     pub fn at_byte(self, byte: Option<u64>) -> Self {
         Self { byte, ..self }

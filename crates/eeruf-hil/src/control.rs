@@ -65,7 +65,7 @@ impl Control {
         self.ring.edge(edge).map_err(|error| error.to_string())
     }
 
-    /// Follows a poll of the board's ring at `now` that returned `event`: fires if that fired, and not otherwise.
+    /// Follows a poll of the board's ring at `now` that returned `event`: fires exactly if the board fired.
     pub(crate) fn after_poll(&mut self, now: Instant, event: Option<&RingEvent>) -> Result<(), String> {
         while let Some(edge) = self.ahead.pop_if(|edge| now.has_reached(edge.at)) {
             self.ring.edge(edge).map_err(|error| error.to_string())?;

@@ -55,7 +55,7 @@ pub struct Orders {
     pub periods: u32,
     /// The period, counted from 0, after which the main loop stalls.
     pub stall_after: u32,
-    /// Duration; zero for never.
+    /// Duration of the stall; zero for none.
     pub stall: Micros,
 }
 
@@ -97,7 +97,7 @@ impl Ahead {
     }
 }
 
-/// Something that the board says.
+/// A message of the board.
 ///
 /// Six words: what it is and which sensor it concerns, and five more.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

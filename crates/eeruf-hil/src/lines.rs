@@ -113,8 +113,8 @@ impl<'w> Lines<'w> {
         Self { played, ..self }
     }
 
-    /// Microseconds since the start, without the clock's wrap: `at` is less than half an hour from what was asked
-    /// before.
+    /// Microseconds since the start, without the clock's wrap: `at` is less than half an hour from the instant of the
+    /// last call.
     fn since_start(&mut self, at: Instant) -> u64 {
         let (known, us) = self.clock;
         let ahead = at.since(known).as_micros().cast_signed();

@@ -1,7 +1,7 @@
 //! `eeruf-hil SCENE --board NAME EMULATOR .. [--board ..]`: hardware in the loop, without a fault and with each of six.
 //!
-//! Prints two tables in Markdown: how the boards' rings agree with the host's, and what each fault did. Leaves with 1
-//! if anything is not as it must be.
+//! Prints two tables in Markdown: how the boards' rings agree with the host's, and what each fault did. Exits with 1 if
+//! anything is wrong.
 //!
 //! `eeruf-hil SCENE --flow --board NAME EMULATOR .. [--board ..]`: the same of boards whose ring fires by flow; one
 //! table.
@@ -162,8 +162,9 @@ fn flow_table(scene: &str, boards: &[Board<'_>]) -> Result<String, String> {
     ))
 }
 
-/// A microsecond may decide what is believed, and so when the next fires, and interrupts come some microseconds earlier
-/// or later in each run. So the table has no counts and no lateness, and standard error has the counts.
+/// Makes a row for a flow ring. A microsecond may decide what is believed, and thus when the next sensor fires, and
+/// interrupt times vary by microseconds between runs: the table has no counts and no lateness, and standard error has
+/// the counts.
 fn flow_row(world: &World, board: &str, fault: Fault, emulator: &[String]) -> Result<String, String> {
     let run = run_flow(world, fault, PERIODS, emulator)?;
     let report = run.report_flow(fault)?;

@@ -17,7 +17,7 @@ impl PlayedLines {
     /// rises, and `-6280*`, which falls without an interrupt.
     ///
     /// # Errors
-    /// Names an entry that is otherwise, or the number of entries.
+    /// The first malformed entry, or a wrong number of entries.
     pub(crate) fn read(text: &str) -> Result<Self, String> {
         let entries: Vec<&str> = text.split(',').collect();
         let entries = <[&str; SENSORS]>::try_from(entries)

@@ -107,14 +107,14 @@ pub(crate) enum Pace {
     Wall,
 }
 
-/// A run of a board whose ring fires by the table of two phases. Where a line has a fault, what the others read is held
-/// against the control.
+/// A run of a board whose ring fires by the table of two phases. If a line has a fault, the readings of the others are
+/// compared with the control.
 pub(crate) fn run(world: &World, fault: Fault, periods: u32, pace: Pace, emulator: &[String]) -> Result<Run, String> {
     let make = |now| Ring::new(&SCHEDULE, CONFIG, now).map_err(|error| error.to_string());
     run_ring(world, (fault, None), periods, pace, emulator, make, true)
 }
 
-/// Runs that board in real time, with these edges on its lines.
+/// Runs a board in real time, with these edges on its lines.
 pub(crate) fn run_played(world: &World, lines: PlayedLines, periods: u32, emulator: &[String]) -> Result<Run, String> {
     let make = |now| Ring::new(&SCHEDULE, CONFIG, now).map_err(|error| error.to_string());
     run_ring(world, (Fault::None, Some(lines)), periods, Pace::Wall, emulator, make, false)
@@ -234,8 +234,7 @@ impl Run {
         sensors.flat_map(|(_, read)| read).filter(|reading| reading.kind == kind).count()
     }
 
-    /// The share of its readings that the worst-off sensor has believed, tentative or confirmed; the one with the
-    /// fault is left out.
+    /// The least share of believed readings, tentative or confirmed, of any sensor but the faulty one.
     pub(crate) fn least_believed(&self, but: Option<u8>) -> f64 {
         let sensors = self.read.iter().enumerate().filter(|&(sensor, _)| Some(sensor) != but.map(usize::from));
         let share = |read: &[Reading]| {
@@ -260,8 +259,8 @@ impl Run {
         Ok(())
     }
 
-    /// Number of readings that are of the kind that the simulator's own run of the same world has, and by how many
-    /// microseconds their echo times differ at most.
+    /// Number of readings whose kind equals that of the simulator's own run of the same world, and the greatest
+    /// difference of their echo times, in microseconds.
     pub(crate) fn as_simulated(&self, simulated: &Readings) -> Result<(usize, f64), String> {
         let (mut same, mut most) = (0, 0.0_f64);
         for k in 0..simulated.len() {
@@ -280,7 +279,7 @@ impl Run {
         Ok((same, most))
     }
 
-    /// The report's name for the fault; it must be this one, and nothing else.
+    /// The reported name of the fault, which must be this one and no other.
     pub(crate) fn report(&self, fault: Fault) -> Result<String, String> {
         // The next firing is due up to 24 ms after the stall began.
         self.report_late(fault, Some(Micros::from_millis(26)))

@@ -106,14 +106,14 @@ impl Form {
     }
 }
 
-/// Enough bytes to recognise the form.
+/// Reads enough bytes to recognise the form.
 pub(crate) fn first_bytes(input: impl Read) -> io::Result<Vec<u8>> {
     let mut first = Vec::new();
     input.take(512).read_to_end(&mut first)?;
     Ok(first)
 }
 
-/// Returns true for bytes that are not text: many are below the space. In UTF-16 every other byte is zero.
+/// Returns true for bytes that are not text: many are control characters. In UTF-16 every other byte is zero.
 fn is_binary(first: &[u8]) -> bool {
     if matches!(first, [0xff, 0xfe, ..] | [0xfe, 0xff, ..]) {
         return false;
@@ -137,7 +137,7 @@ impl Packing {
         }
     }
 
-    /// Unpacks as it is read.
+    /// Returns a reader that unpacks the input as it reads.
     pub(crate) fn unpack<'a>(self, input: impl Read + 'a) -> io::Result<Box<dyn Read + 'a>> {
         Ok(match self {
             Self::Gzip => Box::new(flate2::read::MultiGzDecoder::new(input)),

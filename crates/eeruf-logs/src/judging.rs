@@ -73,7 +73,7 @@ struct Clock {
 impl Clock {
     /// Returns true if a reading at this time must not be compared with the one before.
     fn breaks(&mut self, at_ns: u64) -> bool {
-        /// Least length of a gap, and in usual intervals.
+        /// Least length of a gap: in nanoseconds, and in usual intervals.
         const SHORTEST_GAP_NS: f64 = 1e9;
         const TIMES_USUAL: f64 = 5.0;
         /// Least length of a gap before a usual interval is known.

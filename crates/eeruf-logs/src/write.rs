@@ -18,9 +18,9 @@ use eeruf_files::FileError;
 pub struct McapWriter {
     file: PathBuf,
     writer: Writer<BufWriter<File>>,
-    /// By the name of the type.
+    /// Schemas by the name of their type.
     schemas: BTreeMap<&'static str, u16>,
-    /// By topic: its channel, and how many messages it has.
+    /// Channels by topic, each with its number of messages.
     channels: BTreeMap<String, (u16, u32)>,
     message: Vec<u8>,
 }

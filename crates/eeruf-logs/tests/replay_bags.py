@@ -19,7 +19,7 @@ MOST_MORE_MB = 4.0
 
 
 def replay(program: str, bag: Path) -> tuple[int, float, float]:
-    """Return how many messages it counts, processor time in s, memory in MB."""
+    """Return its count of messages, processor time in s, and memory in MB."""
     with tempfile.TemporaryFile() as said:
         command = [program, "replay", str(bag), "--t-delta-us", "500", "--json"]
         process = subprocess.Popen(command, stdout=said, stderr=subprocess.PIPE, text=True)

@@ -36,7 +36,7 @@ def record(bag: rosbag.Bag) -> None:
 
 
 def by_rosbag(file: pathlib.Path) -> "dict[str, list[float]]":
-    """Give the ranges of each topic."""
+    """Return the ranges of each topic."""
     found = collections.defaultdict(list)
     with rosbag.Bag(str(file)) as bag:
         for topic, message, _ in bag.read_messages():
@@ -60,7 +60,7 @@ def summary(ranges: "list[tuple[float, float, float]]") -> "dict[str, object]":
 
 
 def check(program: str, file: pathlib.Path) -> int:
-    """Hold the program's reading against that of ROS."""
+    """Compare the program's reading with that of ROS."""
     told = subprocess.run([program, "logs", str(file), "--json"], check=False, stdout=subprocess.PIPE)
     # 1 is crosstalk, 3 a log that cannot tell.
     assert told.returncode in (0, 1, 3), told.returncode

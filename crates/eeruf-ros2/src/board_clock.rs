@@ -14,14 +14,14 @@ const RESTART_NS: i64 = 2_000_000_000;
 pub(crate) struct BoardClock {
     /// The last instant, raw and with its wraps counted.
     last: Option<(Instant, i64)>,
-    /// The least of arrival minus making, in this stretch and the one before, and when this one began.
+    /// The least difference between arrival and making, in this stretch and the one before, and when this one began.
     offsets_ns: Option<[i64; 2]>,
     began_us: i64,
 }
 
 impl BoardClock {
-    /// Returns the time when a sensor fired, in nanoseconds of the host's clock, of a frame that was made so long after
-    /// and arrived at `arrived_ns`.
+    /// Returns the time when a sensor fired, in nanoseconds of the host's clock, from a frame made `age` later that
+    /// arrived at `arrived_ns`.
     pub(crate) fn fired_ns(&mut self, fired: Instant, age: Micros, arrived_ns: i64) -> i64 {
         let fired_us = self.without_wraps(fired);
         let offset = arrived_ns - 1000 * (fired_us + i64::from(age.as_micros()));

@@ -53,20 +53,20 @@ pub(crate) enum Task {
     Run(Box<Setup>),
 }
 
-/// Arguments with which the node is started.
+/// Arguments for starting the node.
 pub(crate) struct Setup {
     pub(crate) parameters: Parameters,
-    /// Place where the sensors are, if a ring file says it.
+    /// Places of the sensors, if a ring file gives them.
     pub(crate) placing: Placing,
     /// The scene, if there is no hardware.
     pub(crate) world: Option<Arc<World>>,
     /// The ring on this machine's own pins.
     pub(crate) gpio: Option<GpioRing>,
-    /// None if it speaks no ROS.
+    /// Arguments of ROS; `None` without ROS.
     pub(crate) ros: Option<RosArgs>,
 }
 
-/// Reads the command line, and the files that it names. Leaves the program for what clap answers by itself.
+/// Parses the command line and reads the files that it names. Exits if clap answers by itself.
 pub(crate) fn task() -> Result<Task, String> {
     let mut arguments: Vec<String> = Vec::new();
     for argument in std::env::args_os() {

@@ -19,7 +19,7 @@ impl FiringLog {
         Ok(Self { file: BufWriter::new(file), begun: false })
     }
 
-    /// Writes a firing, by a clock of this name.
+    /// Writes a firing, timed by the clock of this name.
     pub(crate) fn write(&mut self, clock: &str, firing: &FiringMessage) -> io::Result<()> {
         if !self.begun {
             self.begun = true;

@@ -1,5 +1,5 @@
-//! A ring of HC-SR04 modules on this machine's own pins, as a Raspberry Pi has them. It speaks to the node as a board
-//! does: with the same messages.
+//! A ring of HC-SR04 modules on this machine's own pins, as on a Raspberry Pi. It sends the node the same messages as a
+//! board.
 
 #[cfg(target_os = "linux")]
 mod chip;
@@ -278,8 +278,8 @@ mod tests {
 
     use eeruf_core::ReadingKind;
 
-    /// Modules before walls that stand still, and a clock that goes on where the ring waits. Module 2 has a cut wire,
-    /// nothing is in range of module 3, and the line of module 4 is stuck. What is before module 1 may jump.
+    /// Modules before walls that stand still, and a clock that advances while the ring waits. Module 2 has a cut wire,
+    /// nothing is in range of module 3, and the line of module 4 is stuck. The object before module 1 may jump.
     struct Modules {
         jumps: bool,
         now_us: Cell<u64>,
@@ -349,7 +349,7 @@ mod tests {
 
     type OfSensor = Vec<(ReadingKind, Option<Micros>)>;
 
-    /// The readings of 40 periods, by sensor, and the health at their end. The ring is told of the speeds of a period.
+    /// The readings of 40 periods, by sensor, and the health at their end. The ring gets the speeds once a period.
     fn read(
         start_us: u64,
         (ring, method): (&str, &str),

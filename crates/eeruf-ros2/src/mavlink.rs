@@ -19,7 +19,7 @@ use crate::view::View;
 
 const CRC: Crc<u16> = Crc::<u16>::new(&CRC_16_MCRF4XX);
 
-/// A message's number, and the byte by which sender and receiver know that they mean the same fields.
+/// A message's number, and the byte that stands for its field layout.
 type Kind = (u32, u8);
 const HEARTBEAT: Kind = (0, 50);
 const SYS_STATUS: Kind = (1, 124);
@@ -177,7 +177,7 @@ impl Mavlink {
         self.unanswered_as == UnansweredAs::Hold && !self.armed && self.failed.contains(&true)
     }
 
-    /// Sends a heartbeat and whether all sensors answer, once a second.
+    /// Sends a heartbeat and the sensors' status, once a second.
     pub(crate) fn heartbeat(&mut self) -> std::io::Result<()> {
         self.listen();
         let is_well = !self.failed.contains(&true);
@@ -296,7 +296,7 @@ mod tests {
         Mavlink::open(&Parameters { mavlink: "udp:127.0.0.1:14550".to_owned(), ..given }).unwrap()
     }
 
-    /// The sector whose middle looks there, clockwise from ahead.
+    /// The sector whose middle is nearest to a direction in degrees, clockwise from ahead.
     fn sector(deg: f32) -> usize {
         ((deg - FIRST_SECTOR_DEG) / SECTOR_DEG).rem_euclid(SECTORS as f32) as usize
     }

@@ -290,7 +290,7 @@ struct Shares {
     left: [u32; 2],
 }
 
-/// Seconds of a case, and how often the costmap and the scan come.
+/// Duration of a case, and the intervals of costmap and scan, in seconds.
 const LASTS_S: f64 = 8.0;
 const UPDATE_STEPS: u32 = 10;
 const SCAN_STEPS: u32 = 5;

@@ -1,4 +1,4 @@
-//! The node's parameters, and how they are read from the YAML that ROS 2 uses for them.
+//! The source of readings.
 
 use std::fmt::{self, Write as _};
 use std::path::PathBuf;
@@ -21,7 +21,7 @@ pub(crate) enum Source {
     Simulation,
 }
 
-/// The distances of a ring of which a sensor does not answer.
+/// Distances to send while a sensor does not answer.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum UnansweredAs {
@@ -58,7 +58,7 @@ macro_rules! parameters {
                 vec![$((stringify!($name), self.$name.value()),)+]
             }
 
-            /// Sets the parameter of this name to what the value says.
+            /// Sets the parameter of this name.
             fn set<'de, D: Deserializer<'de>>(&mut self, name: &str, value: D) -> Result<(), D::Error> {
                 const NAMES: &[&str] = &[$(stringify!($name)),+];
                 match name {
@@ -291,7 +291,7 @@ impl Parameters {
         file
     }
 
-    /// Sets what a file says of the node with this full name, as `/eeruf`; later parts of it prevail.
+    /// Sets the parameters that a file gives for the node with this full name, such as `/eeruf`; later parts prevail.
     pub(crate) fn read_yaml(&mut self, text: &str, node: &str) -> Result<(), String> {
         let (mut found, mut others) = (false, Vec::new());
         let nodes = Nodes { path: String::new(), node, parameters: self, found: &mut found, others: &mut others };
@@ -304,13 +304,13 @@ impl Parameters {
         Err(format!("{others}; expected those of {node} or /**"))
     }
 
-    /// Sets one parameter to what a piece of YAML says.
+    /// Sets one parameter from a piece of YAML.
     pub(crate) fn read_one(&mut self, name: &str, value: &str) -> Result<(), String> {
         serde_saphyr::with_deserializer_from_str(value, |yaml| One(self, name).deserialize(yaml))
             .map_err(|error| format!("{name}:={value}: {error}"))
     }
 
-    /// Checks that they can be used, and together.
+    /// Checks that the parameters are valid, alone and together.
     pub(crate) fn check(&self) -> Result<(), String> {
         let must = |holds: bool, wrong: String| if holds { Ok(()) } else { Err(wrong) };
         let sensors = usize::from(self.sensors);

@@ -26,7 +26,7 @@ pub(crate) struct Place {
 }
 
 impl Placing {
-    /// Reads the ring file of the parameters, if they name one; it says how many sensors there are and where they look.
+    /// Reads the ring file of the parameters, if they name one; it gives the number of sensors and their directions.
     pub(crate) fn read(parameters: &mut Parameters) -> Result<Self, String> {
         let file = parameters.ring.clone();
         if file.as_os_str().is_empty() {
@@ -75,7 +75,7 @@ impl Placing {
         self.places.iter().zip(frame_ids).filter(|(_, frame_id)| !self.urdf_links.contains(frame_id))
     }
 
-    /// Sets what follows from the places: how many sensors there are, and where they look.
+    /// Sets the parameters that follow from the places: the number of sensors and their directions.
     pub(crate) fn direct(&self, parameters: &mut Parameters) {
         parameters.sensors = u8::try_from(self.places.len()).unwrap_or(MAX_SENSORS as u8);
         parameters.yaws_deg = self.places.iter().map(|place| place.yaw_rad.to_degrees() as f32).collect();

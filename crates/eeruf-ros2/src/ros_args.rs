@@ -1,10 +1,10 @@
 //! The arguments that ROS 2 gives to a node, `--ros-args .. --`, and the names that follow from them.
 
-/// ROS's arguments for the node: its name, its namespace, its parameters and other names for topics.
+/// ROS's arguments for the node: its name, its namespace, its parameters and remappings of topics.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct RosArgs {
     pub(crate) node: String,
-    /// From the root, without a slash at its end: empty, or as `/robot_1`.
+    /// The namespace from the root, without a final slash: empty, or such as `/robot_1`.
     namespace: String,
     /// Pairs of old and new name, in order, not yet expanded.
     rules: Vec<(String, String)>,

@@ -252,8 +252,8 @@ impl EerufNode {
         Ok(())
     }
 
-    /// Sends the state of the whole ring, at most ten times a second and only after new readings: those who listen must
-    /// notice when there are none.
+    /// Sends the state of the whole ring, at most ten times a second and only after new readings: subscribers must
+    /// notice when readings stop.
     fn picture(&mut self) {
         if !self.has_news || self.pictured.is_some_and(|last| last.elapsed() < PICTURE) {
             return;

@@ -36,8 +36,7 @@ pub(crate) struct Simulated {
     pub(crate) truth: Option<Micros>,
 }
 
-/// The reading that a driver makes of a module's line where a fault lets nothing come; the simulator itself takes that
-/// for silence.
+/// The reading that a driver would report for a line silenced by a fault; the simulator itself takes that for silence.
 fn broken(faults: &[Fault], sensor: u8, time_s: f64) -> Option<ReadingKind> {
     let mut there = faults.iter().filter(|fault| fault.is_of(0, sensor) && fault.is_at(time_s));
     there.find_map(|fault| match fault.kind {

@@ -100,7 +100,7 @@ impl Decoder {
     /// Takes a byte. Returns the message of the frame that it ends, if any.
     ///
     /// # Errors
-    /// [`FrameError`] for what stands between two zeros and is no frame; the next frame is read all the same.
+    /// [`FrameError`] for bytes between two zeros that are no frame; the next frame is read all the same.
     pub fn push(&mut self, byte: u8) -> Option<Result<Received, FrameError>> {
         if byte != 0 {
             if let Some(place) = self.bytes.get_mut(self.length) {

@@ -38,7 +38,7 @@ impl Encoder {
         Self { sequence: 0 }
     }
 
-    /// The number of sensors, and the name of the board's clock: ASCII, of which 16 bytes are sent.
+    /// Encodes a greeting: the number of sensors, and the name of the board's clock: ASCII, of which 16 bytes are sent.
     pub fn hello(&mut self, sensors: u8, clock: &str) -> Frame {
         let mut content = self.begin(HELLO);
         content.push(&[sensors]);
@@ -63,8 +63,8 @@ impl Encoder {
         content.finish()
     }
 
-    /// A period has ended: its number, its latest firing, how many edges got lost on the board since it started (modulo
-    /// 256), and how each sensor is, as `eeruf_hc_sr04::Health` counts.
+    /// Encodes the end of a period: its number, its greatest lateness, the number of edges lost on the board since it
+    /// started (modulo 256), and the health of each sensor, as `eeruf_hc_sr04::Health` counts.
     pub fn period(
         &mut self,
         period: u32,

@@ -24,7 +24,8 @@ pub struct FiringMessage {
 }
 
 impl FiringMessage {
-    /// A reading of a sensor that `fired` then, so `late`, as a frame has it that is made `now`.
+    /// Makes the message of a reading whose sensor `fired` at this instant, `late` by this much, for a frame made
+    /// `now`.
     pub fn of(reading: &Reading, fired: Instant, late: Micros, now: Instant) -> Self {
         let Reading { sensor, phase, kind, period, t_echo, explained_by, .. } = *reading;
         let age = now.since(fired);

@@ -55,7 +55,7 @@ const PERIOD: u8 = 2;
 #[cfg(feature = "decode")]
 const OF_HOPPING: u8 = 3;
 
-/// The bytes beside the sensors, from 0, that explain a reading.
+/// Codes of explanations other than sensors, which count from 0.
 const BY_HISTORY: u8 = 0xFE;
 const BY_NOTHING: u8 = 0xFF;
 

@@ -29,9 +29,9 @@ impl<const K: usize> Recorder<K> {
         Self { encoder: Encoder::new(), clock, fired: [(Instant::from_micros(0), Micros::ZERO); K], firings: 0 }
     }
 
-    /// Returns the frame of an event, if it has one. Pass every event, with the `now` of its poll. `health` says how a
-    /// sensor is, as `eeruf_hc_sr04::Health as u8` (0 for well; all 0 where it is unknown), and `edges_lost` how many
-    /// edges found their queue full; both are asked for at a period's end only.
+    /// Returns the frame of an event, if it has one. Pass every event, with the `now` of its poll. `health` gives a
+    /// sensor's `eeruf_hc_sr04::Health as u8` (0 for well; all 0 if unknown), and `edges_lost` the number of edges that
+    /// found their queue full; both are called at a period's end only.
     pub fn event(
         &mut self,
         event: &RingEvent,
@@ -56,8 +56,8 @@ impl<const K: usize> Recorder<K> {
         }
     }
 
-    /// A sensor fired `at` this instant, so much after it was due: where a timer knows better than the poll, as for
-    /// [`Ring::fired`](eeruf_core::Ring::fired).
+    /// Reports that a sensor fired `at` this instant, `late` after it was due, if a timer knows it better than the
+    /// poll, as for [`Ring::fired`](eeruf_core::Ring::fired).
     pub fn fired(&mut self, sensor: u8, at: Instant, late: Micros) {
         if let Some(place) = self.fired.get_mut(usize::from(sensor)) {
             *place = (at, late);

@@ -127,8 +127,8 @@ fn damage(frame: &Frame, numbers: &mut Rng) -> Vec<u8> {
     bytes
 }
 
-/// The check sum of 16 bits lets one in 65,536 damaged frames pass, and what a frame must hold beside it catches some
-/// of those. The numbers here are always the same.
+/// Checks that damage costs only the frames that it hits. The 16-bit check sum lets one in 65,536 damaged frames pass,
+/// and further checks catch some of those; the random numbers are always the same.
 #[test]
 fn cuts_and_flips_cost_only_the_frames_that_they_hit() {
     let mut numbers = Rng::with_seed(20_000);

@@ -67,8 +67,8 @@ impl<const K: usize> fmt::Display for ArduinoTab<'_, K> {
     }
 }
 
-/// The constant of type `EerufSchedule`, and what it points to. It says what it was verified for if it meets the
-/// requirements, else that it was not.
+/// The constant of type `EerufSchedule`, and what it points to. It names the requirements if it meets them; otherwise
+/// it is marked unverified.
 struct Constant<'r, const K: usize> {
     schedule: &'r Schedule<K>,
     requirements: &'r Requirements<'r>,

@@ -79,7 +79,7 @@ pub struct Suspect {
     pub by: Option<usize>,
     /// The evidence for it.
     pub reason: String,
-    /// The test that decides.
+    /// The test that decides the suspicion.
     pub test: String,
 }
 

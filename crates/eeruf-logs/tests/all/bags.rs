@@ -20,7 +20,7 @@ fn stamp(message: usize) -> u64 {
     1_700_000_000_000_000_000 + 100_000_000 * message as u64
 }
 
-/// Checks that the readings of each topic `/sonar/N` are those written, in order.
+/// Checks that the readings of each topic `/sonar/N` equal those written, in order.
 fn holds(name: &str, report: &Report, readings: &[LogReading], messages: usize, variance: Option<f32>) {
     for (sensor, of) in report.sensors.iter().enumerate().filter(|(_, sensor)| sensor.beam.is_none()) {
         let number: usize = of.topic.strip_prefix("/sonar/").unwrap().parse().unwrap();

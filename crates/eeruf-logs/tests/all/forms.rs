@@ -294,7 +294,7 @@ fn sensors_that_read_alike_stay_sensors() {
     assert_eq!(said(rows(&|cm| (cm * 10).to_string()).as_bytes(), &Options::default()).2.sensors.len(), 1);
 }
 
-/// Results on forms whose answers were written down before the reader saw them: correct, refused or reported as
+/// Checks results on forms whose answers were written down before the reader saw them: correct, refused or reported as
 /// damaged, and silently wrong.
 fn tried(file: &str) -> (usize, Vec<String>, Vec<String>) {
     let (mut right, mut open, mut wrong) = (0, vec![], vec![]);

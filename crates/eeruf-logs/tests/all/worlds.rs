@@ -78,7 +78,7 @@ impl Printed {
     }
 }
 
-/// A sensor with random readings now and then, or none.
+/// Picks a sensor with occasional random readings, or none.
 fn chatters(random: &mut Random, sensors: usize, chatters: bool) -> (usize, f64) {
     let (sensor, share) = (random.below(sensors as i64) as usize, random.between(0.1, 0.3));
     (if chatters { sensor } else { usize::MAX }, share)

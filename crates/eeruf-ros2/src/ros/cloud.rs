@@ -23,8 +23,8 @@ const FIELDS: [(&str, u32, u8); 6] = [
 ];
 const POINT: u32 = 20;
 
-/// The cloud of what each sensor sees, with the age of that in seconds. Where no obstacle is, the point is NaN: a
-/// reader that knows nothing of states finds no obstacle there, and no free space either.
+/// The cloud of the sensors' views, with their ages in seconds. Where no obstacle is, the point is NaN: a reader that
+/// knows nothing of states finds no obstacle there, and no free space either.
 pub(super) fn cloud(header: Header, places: &[Place], views: &[(View, f32)], min_m: f32) -> PointCloud2 {
     let mut data = Vec::new();
     for ((place, &(view, age_s)), sensor) in places.iter().zip(views).zip(0_u8..) {

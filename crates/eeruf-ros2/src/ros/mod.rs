@@ -41,12 +41,12 @@ struct Placed {
     base_frame: String,
     cloud: Publisher<PointCloud2>,
     scan: Publisher<LaserScan>,
-    /// Kept so that later subscribers receive what it sent.
+    /// Publisher of transforms, kept so that later subscribers receive them.
     _transforms: Publisher<TfMessage>,
 }
 
 pub(crate) struct Ros {
-    /// Leaves when it is dropped.
+    /// The node, which leaves the domain when it is dropped.
     node: Node,
     ranges: Vec<Publisher<Range>>,
     frame_ids: Vec<String>,
@@ -62,11 +62,12 @@ pub(crate) struct Ros {
     hardware: String,
 }
 
-/// Reliable for subscribers that ask for it. One that does not acknowledge holds up the node for no longer than this.
+/// Quality of service for publishing: reliable for subscribers that ask for it. One that does not acknowledge delays
+/// the node by no more than this.
 const PUBLISHING: QosProfile = QosProfile::publisher_default()
     .reliability_reliable(WhenFull::Wait(Duration::from_millis(10)))
     .history(History::KeepLast { depth: 10 });
-/// For transforms that never change: later subscribers receive them, too.
+/// Quality of service for transforms that never change: later subscribers receive them, too.
 const LATCHED: QosProfile =
     QosProfile { durability: Durability::TransientLocal, history: History::KeepLast { depth: 1 }, ..PUBLISHING };
 /// Quality of service named sensor data in ROS 2: lost messages are not sent again.
@@ -115,7 +116,7 @@ impl Ros {
         })
     }
 
-    /// Publishes what the node says on `/rosout`.
+    /// Publishes a message of the node on `/rosout`.
     pub(crate) fn log(&self, what: &str) {
         ros2_client::rosout!(self.node, LogLevel::Info, "{what}");
     }
@@ -137,7 +138,7 @@ impl Ros {
         publisher.publish(message).is_ok()
     }
 
-    /// Publishes what all sensors see, with its age in seconds, and their scan; false if sending failed.
+    /// Publishes the views of all sensors, with their ages in seconds, and their scan; false if sending failed.
     pub(crate) fn publish_ring(&self, now_ns: i64, views: &[(View, f32)], scale: &Scale) -> bool {
         let Some(placed) = &self.placed else { return true };
         let header = Header { stamp: Time::from_nanoseconds(now_ns), frame_id: placed.base_frame.clone() };
@@ -174,7 +175,7 @@ impl Ros {
         self.diagnostics.publish(DiagnosticArray { header, status: status.collect() }).is_ok()
     }
 
-    /// Passes on how the robot has moved since; an error for an invalid message.
+    /// Yields the robot's speeds reported since the last call; an error for an invalid message.
     pub(crate) fn take(&self) -> impl Iterator<Item = Result<Speeds, String>> {
         self.odometry
             .iter()
@@ -183,7 +184,7 @@ impl Ros {
     }
 }
 
-/// Parameters to be read, and not to be set: they were read at the start.
+/// Options that let parameters be read but not set, since they take effect only at the start.
 fn options(parameters: &Parameters) -> NodeOptions {
     let values = parameters.values();
     let none = NodeOptions::new();
@@ -194,7 +195,7 @@ fn options(parameters: &Parameters) -> NodeOptions {
     }))
 }
 
-/// The node, and what its topics are called.
+/// The node, and the names of its topics.
 struct Topics<'a> {
     node: Node,
     args: &'a RosArgs,

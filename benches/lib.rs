@@ -9,8 +9,8 @@ use eeruf_core::{Criterion, Instant as Now, Layout, Micros, Requirements, Ring, 
 use eeruf_design::{Effort, RingSpec};
 use eeruf_period::PeriodProblem;
 
-/// Runs something for a fifth of a second, at least once, and prints the shortest time, and how many things that is a
-/// second. Under `cargo test`, which gives no argument `--bench`, it only has to run.
+/// Runs something for a fifth of a second, at least once, and prints the shortest time and the rate in things per
+/// second. Under `cargo test`, which passes no `--bench`, it runs once.
 pub fn time<R>(name: &str, things: usize, mut run: impl FnMut() -> R) {
     let is_timed = std::env::args().any(|arg| arg == "--bench");
     let (began, mut best_s) = (Instant::now(), f64::INFINITY);

@@ -6,10 +6,10 @@ use eeruf_sim::experiments::set_one::Alcove;
 use eeruf_sim::experiments::set_two::{self as driven, SECOND_BEHIND, SetTwoOptions};
 use eeruf_sim::{Method, Motion, Options, Physics, Robot, Vector, World, simulate};
 
-/// Long enough that finding the paths once does not count.
+/// Number of periods, large enough that finding the paths once is negligible.
 const LONG: u32 = 20_000;
 
-/// The default first, then the presets that earlier versions can be compared with.
+/// The default physics, then the presets that earlier versions have too.
 const PHYSICS: [(&str, Physics); 2] = [("default", Physics::DEFAULT), ("plain", Physics::PLAIN)];
 
 fn under(physics: Physics, world: Result<World, eeruf_sim::WorldError>) -> World {

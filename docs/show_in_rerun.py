@@ -1,4 +1,4 @@
-"""Shows in Rerun what `eeruf study --mcap` wrote: python docs/show_in_rerun.py study.mcap [study.rrd]
+"""Shows the output of `eeruf study --mcap` in Rerun: python docs/show_in_rerun.py study.mcap [study.rrd]
 
 Needs `pip install rerun-sdk mcap-ros2-support`. With a second name it writes a file instead of opening a window.
 """

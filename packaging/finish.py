@@ -26,7 +26,7 @@ Documented = Union[ast.ClassDef, ast.FunctionDef]
 
 
 def load(file: Path) -> ModuleType:
-    """The compiled module in a file, without the package around it, which needs NumPy."""
+    """Load the compiled module in a file, without the package around it, which needs NumPy."""
     loader = ExtensionFileLoader("_eeruf", str(file))
     spec = spec_from_loader("_eeruf", loader)
     assert spec is not None
@@ -36,7 +36,7 @@ def load(file: Path) -> ModuleType:
 
 
 def documented(stub: ast.Module, module: ModuleType) -> Iterator[tuple[str, Documented, str | None]]:
-    """The public classes, functions, methods and properties of a stub, each with its docstring in the module."""
+    """Yield the public classes, functions, methods and properties of a stub, each with its docstring in the module."""
 
     def each(nodes: list[ast.stmt], owner: object, name: str) -> Iterator[tuple[str, Documented, str | None]]:
         for node in nodes:
@@ -51,7 +51,7 @@ def documented(stub: ast.Module, module: ModuleType) -> Iterator[tuple[str, Docu
 
 
 def with_docstrings(text: str, module: ModuleType) -> str:
-    """The stub with the docstrings of the module, and the names of its methods."""
+    """Return the stub with the docstrings of the module, and the names of its methods."""
     names = ", ".join(f'"{name}"' for name in module.METHODS)
     text = re.sub(r"^_MethodName = .*$", f"_MethodName = Literal[{names}]", text, flags=re.MULTILINE)
     lines = text.splitlines()

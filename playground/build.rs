@@ -5,7 +5,7 @@ use std::fs;
 use std::path::Path;
 
 const ATLAS: &str = "../crates/eeruf-design/src/atlas/atlas.txt";
-/// Up to this many sensors no search of the atlas's rings takes more than a few tenths of a second.
+/// Number of sensors up to which a search takes no more than a few tenths of a second.
 const QUICK: u64 = 12;
 /// Number of adjacent sensors that are neighbours on the page.
 const NEIGHBOURS: u64 = 4;

@@ -30,7 +30,7 @@ Steps = list[tuple[float, int]]
 
 
 class Watch(cp_model.CpSolverSolutionCallback):
-    """The periods found, each with the seconds until then."""
+    """The periods found, each with the time until it was found, in seconds."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -44,7 +44,7 @@ class Watch(cp_model.CpSolverSolutionCallback):
 
 
 def cp_sat(ring: dict, limit: float) -> tuple[int, float, Steps]:
-    """Bound, seconds and steps of CP-SAT, which found that there is no schedule if the bound is 0."""
+    """Solve by CP-SAT. Return bound, seconds and steps; a bound of 0 means that no schedule exists."""
     m, count = cp_model.CpModel(), len(ring["window"])
     most = 2 * sum(max(gap[2:]) for gap in ring["gaps"]) + max(ring["window"]) + 3 * sum(ring["separation"])
     period = m.new_int_var(1, most, "")
@@ -92,7 +92,7 @@ def cp_sat(ring: dict, limit: float) -> tuple[int, float, Steps]:
 
 
 def even(line: str) -> dict:
-    """A ring of `cargo lab shortest-periods`, as those of `uneven-rings` are."""
+    """Return a ring of `cargo lab shortest-periods` in the form of `uneven-rings`."""
     layout, sensors, window, period, bound, _nodes, ms, _reason = line.split(" ", 7)
     count, gaps = int(sensors), []
     for x, y in itertools.combinations(range(count), 2):

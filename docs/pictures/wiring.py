@@ -59,7 +59,7 @@ PITCH, TOP, LABEL = 22, 70, 128
 
 
 def pins(board):
-    """Uses of pins, of the table of the README: {"GP0": "Trig 1"}."""
+    """Return the uses of pins from the table of the README: {"GP0": "Trig 1"}."""
     names_of_board = " ".join(BOARDS[board][2] + BOARDS[board][3]).split()
     used = {}
     for line in (EXAMPLES / board / "README.md").read_text().splitlines():
@@ -80,7 +80,7 @@ def text(x, y, said, anchor="start", colour="#212529", more=""):
 
 
 def pin(x, y, name, use, side):
-    """A pin, its name, and outside what it goes to."""
+    """Draw a pin with its name, and its use outside."""
     if use:
         colour = TRIG if use.startswith("Trig") else ECHO
     else:
@@ -94,7 +94,7 @@ def pin(x, y, name, use, side):
 
 
 def module(x, y, divided):
-    """One module: its four pins, and the divider in its echo line."""
+    """Draw one module: its four pins, and the divider in its echo line."""
     drawn = [
         text(x, y - 16, "Each module", more=' font-weight="bold"'),
         f'<rect x="{x}" y="{y}" width="96" height="104" rx="6" fill="#e9ecef" stroke="#495057"/>',

@@ -2,7 +2,7 @@
 
 use eeruf_c_equal::{Random, flow, modules, ring};
 
-/// Compares one ring, of the kind that the first byte says.
+/// Compares one ring, whose kind the first byte gives.
 ///
 /// # Panics
 /// Where C and Rust differ.

@@ -1,4 +1,4 @@
-//! The filter against a naive one, which keeps all firings and reads the rule off them.
+//! The filter compared with a naive one, which keeps all firings and applies the rule directly.
 
 use arbitrary::Arbitrary;
 use eeruf_core::{EchoFilter, Micros, ReadingKind};
@@ -65,7 +65,7 @@ fn naive(t_delta: u16, consecutive: usize, firings: &[Heard]) -> (ReadingKind, O
     (if compared { ReadingKind::Rejected } else { ReadingKind::First }, last.echoes.first().copied())
 }
 
-/// Pushes all firings into both.
+/// Pushes all firings into both filters.
 pub fn check(input: &Firings) {
     let consecutive = 2 + input.consecutive % 7;
     let t_delta = input.t_delta;

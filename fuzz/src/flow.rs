@@ -19,7 +19,7 @@ use crate::ring::{Echo, Lines, SENSORS, Step, explain, instant, time_of};
 /// Random input.
 #[derive(Arbitrary, Debug)]
 pub struct Input {
-    /// Reading of the clock at the start; it wraps soon after the larger values.
+    /// Reading of the clock at the start; large values make it wrap soon.
     pub start: u32,
     pub sensors: u8,
     pub turns: [u16; 4],
@@ -58,16 +58,16 @@ pub enum Kind {
 /// Rule by which a judge believes.
 #[derive(Clone, Copy)]
 struct Believes {
-    /// Number of readings that must agree, and of how many.
+    /// Number of readings that must agree.
     m: usize,
     n: usize,
-    /// The most by which a reading that fits a belief may differ from it; `None` for a judge without belief.
+    /// Largest difference from the belief of a reading that fits it; `None` for a judge without belief.
     near: Option<Micros>,
     /// True if the robot stands and the ring knows it.
     stands: bool,
 }
 
-/// Does all steps with the ring and the model.
+/// Performs all steps on the ring and the model.
 pub fn check(input: &Input) {
     let us = |us: u16| Micros::new(us.into());
     // Mostly so that sensors hear each other, and in step.
@@ -131,7 +131,7 @@ pub fn check(input: &Input) {
     }
 }
 
-/// A reading: when its sensor fired, its echoes, and by how much they may be off.
+/// A reading: the time of its firing, its echoes, and their possible error.
 #[derive(Clone, Debug)]
 struct Heard {
     fired: u64,
@@ -198,7 +198,7 @@ impl<U: OwnLimits, J: Judge, const E: usize, const H: usize> Model<U, J, E, H> {
         }
     }
 
-    /// Does a step. Returns true if the ring is to be polled after it.
+    /// Performs a step. Returns true if the ring must be polled after it.
     fn act(&mut self, step: &Step) -> bool {
         let count = self.ring.sensors() as u8;
         if let Step::Measured { sensor, t_echo, width } = *step
@@ -261,7 +261,7 @@ impl<U: OwnLimits, J: Judge, const E: usize, const H: usize> Model<U, J, E, H> {
         false
     }
 
-    /// Reports when the last firing really was, if its poll was just now and nothing was heard of it yet.
+    /// Reports the true time of the last firing, if its poll was just now and no echo has come yet.
     fn fired(&mut self, by: u8) {
         let Some((x, at)) = self.last.filter(|&(x, at)| at == self.lines.now && self.lines.sensors[x].is_silent())
         else {

@@ -12,7 +12,7 @@ use crate::one_line;
 
 static FOLDER: LazyLock<PathBuf> = LazyLock::new(crate::folder);
 
-/// Reads a bag (`.mcap`, `.bag`, `.db3`, or `metadata.yaml` of a folder beside one), if its first bytes are one's.
+/// Reads a bag (`.mcap`, `.bag`, `.db3`, or `metadata.yaml` of a folder beside one), recognised by its first bytes.
 pub fn bags(bytes: &[u8]) {
     let metadata = b"rosbag2_bagfile_information";
     if bytes.starts_with(metadata) {

@@ -1,4 +1,4 @@
-//! The ring against a slow and obvious account of what its documentation promises.
+//! The ring compared with a slow and obvious model of its documented promises.
 //!
 //! The [`Model`] keeps true time in 64 bits, while the ring sees a counter that wraps. It knows for each sensor the
 //! firing under way with the edges handed in since, and the echoes of the firings before. It does not know when the
@@ -60,7 +60,7 @@ pub enum Step {
     Pass(u16),
     /// Let a minute or two pass.
     PassLong(u8),
-    /// An edge seen this many microseconds ago, which may have come this much sooner; it may be taken back for a while.
+    /// An edge seen this many microseconds ago, which may have come this much sooner; it can be taken back for a while.
     Edge {
         sensor: u8,
         ago: u16,
@@ -78,7 +78,7 @@ pub enum Step {
     Silence(u8),
     Unheard(u8),
     Forget(u8),
-    /// Poll while odometry expects such a change of every reading.
+    /// Poll while odometry expects this change of every reading.
     Expecting(i16),
     Moving(u16),
     PathChange(u16),
@@ -89,7 +89,7 @@ pub enum Step {
     Enable(u8),
     Restart,
     Change(bool),
-    /// The last firing came this many microseconds after its poll, and the clock has moved on.
+    /// Report that the last firing came this many microseconds after its poll; the clock has moved on.
     Fired(u8),
     Pause,
     Resume,

@@ -1,5 +1,4 @@
-//! Files of schedules and of rings, even and uneven: an answer that holds what it promises,
-//! or an error of one line.
+//! Files of schedules and of rings, even and uneven: the answer keeps its promises, or the error takes one line.
 
 use eeruf_core::Phase;
 use eeruf_design::RingSpec;
@@ -8,7 +7,7 @@ use eeruf_sim::ScheduleFile;
 
 use crate::one_line;
 
-/// Reads the text as each of them: what is one kind of file is mostly an error of the others.
+/// Reads the text as each kind of file; most texts are errors for all kinds but one.
 pub fn check(bytes: &[u8]) {
     let Ok(text) = str::from_utf8(bytes) else { return };
     schedule(text);

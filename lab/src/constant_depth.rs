@@ -1,5 +1,5 @@
 //! Regions of constant depth: how far a Polaroid 6500 may turn from a smooth wall and still hear it, by distance and
-//! gain. `docs/explanation/physics.md` compares them with what is published.
+//! gain. `docs/explanation/physics.md` compares them with published ones.
 //!
 //! ```text
 //! cargo lab constant-depth

@@ -23,10 +23,10 @@ struct Counts {
     named: usize,
     /// Readings with an edge.
     readings: usize,
-    /// Paths found, and how many of them no sound took.
+    /// Number of paths found, and of those that no sound took.
     paths: usize,
     accidental: usize,
-    /// Number of faults reported; nothing is broken.
+    /// Number of reported faults, all of them false.
     faults: usize,
     /// 1 if the robot is said to have moved.
     moved: usize,

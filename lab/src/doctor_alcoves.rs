@@ -36,11 +36,11 @@ struct Outcome {
     alone: Examination,
 }
 
-/// Readings of one sensor, in order: the phase, the echo in microseconds, and the sender where that is another sensor.
+/// Readings of one sensor, in order: the phase, the echo in microseconds, and the sender if it is another sensor.
 type Truth = Vec<(u8, f64, Option<u8>)>;
 
-/// Says of which sensors a reader of the log who knows whose sound each reading is could show it by the ranges and
-/// times alone. Under alternating lags: readings are foreign more often at one of the two lags, by four standard
+/// Returns the sensors of which the ranges and times alone could prove crosstalk to a reader who knows the sender of
+/// each reading. Under alternating lags: readings are foreign more often at one of the two lags, by four standard
 /// deviations, or those of one sender move by more than 150 us from one to the next, 20 times. Under constant lags, if
 /// the robot drives: two sensors read each other in 20 periods.
 fn tells(way: &str, drives: bool, truth: &[Truth]) -> [bool; SENSORS] {

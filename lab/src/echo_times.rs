@@ -1,11 +1,11 @@
-//! After which times a ring's sensors hear each other, and themselves, in a scene: for `c/arduino/world/world.c`.
+//! The times after which a ring's sensors hear each other and themselves in a scene, for `c/arduino/world/world.c`.
 //!
 //! ```text
 //! cargo lab echo-times SCENE.toml [SENSORS]
 //! ```
 //!
-//! One line for each way that is loud enough: emitter, receiver (from 0), time in microseconds. With `SENSORS` the
-//! first robot's ring has as many, evenly around it.
+//! One line for each audible path: emitter, receiver (from 0), time in microseconds. `SENSORS` sets the number of
+//! sensors of the first robot's ring, evenly spaced.
 
 use std::path::PathBuf;
 

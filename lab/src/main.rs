@@ -1,4 +1,4 @@
-//! The lab: measurements that the documents quote, and searches whose results stand in the sources.
+//! The lab: measurements that the documents quote, and searches whose results are in the sources.
 //!
 //! `cargo lab` lists them. None of it is published or needed to use eeruf.
 

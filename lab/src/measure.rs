@@ -1,4 +1,4 @@
-//! Ways of firing rings measured by what a robot needs: the table of `eeruf_sim::experiments::measure`, with intervals,
+//! Ways of firing rings measured by a robot's needs: the table of `eeruf_sim::experiments::measure`, with intervals,
 //! and its rows as CSV.
 //!
 //! `cargo lab measure RING.toml .. [--first N] [--places N] [--choose N] [--csv FILE] [--planted BLOCKS]`: rooms from
@@ -133,7 +133,7 @@ fn curve(measured: &Measured, chosen: &Measured) {
     }
 }
 
-/// Prints how often a sound way loses against itself with a planted flaw, which counts as the simpler.
+/// Prints how often a sound way loses to itself with a planted flaw, which counts as the simpler.
 fn planted(ways: &[MeasuredWay], asked: &MeasureAsked, choose: u64, blocks: u64) -> crate::Answer {
     let Some(sound) = ways.iter().find(|way| way.way.name == "one_by_one_33ms") else { return Ok(()) };
     let controls = Control::PLANTED.map(Some).into_iter().chain([None]);

@@ -1,4 +1,4 @@
-//! Effect of `narrow_panels`: how loud panels are straight ahead, and what changes in the first alcoves of Set I.
+//! Effect of `narrow_panels`: the loudness of panels straight ahead, and the changes in the first alcoves of Set I.
 //!
 //! `cargo lab narrow-panels`
 

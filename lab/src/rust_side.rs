@@ -53,7 +53,7 @@ fn paths() -> Value {
     Value::Object(answer)
 }
 
-/// The cases are those of `overhead.py`, to the number.
+/// Returns the times; the cases equal those of `overhead.py`.
 fn times() -> Value {
     let wall = Scene::new(vec![Wall::new(5.0, 2.0, -5.0, 2.0)], vec![], Air::default()).expect("a wall");
     let alcove = [[0.85, 0.0], [0.85, 1.39], [-0.85, 1.39], [-0.85, 0.0]];
@@ -71,7 +71,7 @@ fn times() -> Value {
     })
 }
 
-/// Believes every echo.
+/// A filter that believes every echo.
 struct Everything;
 
 impl Filter for Everything {
@@ -80,7 +80,7 @@ impl Filter for Everything {
     }
 }
 
-/// One step that yields a reading, on average over 10,000, in a simulation of a ring before a wall.
+/// Times one step that yields a reading, on average over 10,000, in a simulation of a ring before a wall.
 fn step(own: impl Fn() -> Own) -> f64 {
     const STEPS: u32 = 10_000;
     let ahead = Pose::rotation(1.57);
@@ -98,7 +98,7 @@ fn step(own: impl Fn() -> Own) -> f64 {
     seconds(many) / f64::from(STEPS)
 }
 
-/// The work of `eeruf.design`: the shortest period, and of its schedules the one to prefer.
+/// Does the work of `eeruf.design`: finds the shortest period and the preferred schedule.
 fn design_of(sensors: usize) -> Micros {
     let requirements = Requirements {
         min_interval: Micros::from_millis(15),
@@ -112,7 +112,7 @@ fn design_of(sensors: usize) -> Micros {
     shortest.period()
 }
 
-/// A million readings of 8 sensors, one by one.
+/// Times a million readings of 8 sensors, one by one.
 fn million() -> f64 {
     let echoes: Vec<f64> = (0..1_000_000).map(|k| 9_000.0 + f64::from(k * 7 % 600)).collect();
     seconds(|| {
@@ -128,7 +128,7 @@ fn million() -> f64 {
     })
 }
 
-/// The shortest of many runs over half a second.
+/// Returns the shortest time of many runs over half a second.
 fn seconds<T>(mut run: impl FnMut() -> T) -> f64 {
     let (mut best, begin) = (f64::INFINITY, Instant::now());
     while begin.elapsed().as_secs_f64() < 0.5 {

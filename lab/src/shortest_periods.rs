@@ -28,7 +28,7 @@ fn list<T: std::str::FromStr>(text: &str) -> Vec<T> {
     text.split(',').filter_map(|item| item.parse().ok()).collect()
 }
 
-/// Searches every ring asked for, and passes on the result and its milliseconds.
+/// Searches every requested ring, and passes on the result and its milliseconds.
 fn search(arguments: &[String], mut found: impl FnMut(Ring, Shortest, f64)) -> crate::Answer {
     let argument = |i: usize, default: &'static str| arguments.get(i).map_or(default, String::as_str);
     let (ticks, separation_ms): (u32, u32) = (argument(0, "1").parse()?, argument(1, "2").parse()?);

@@ -1,4 +1,4 @@
-//! Duration of scenes that are expensive to follow sound in: a ring's matrix among walls and poles, halls of pillars, a
+//! Times of scenes in which sound is expensive to trace: a ring's matrix among walls and poles, halls of pillars, a
 //! world that moves, and Set II, under `default` and under `plain`. The same file, built against another commit, prints
 //! that commit's times.
 //!
@@ -6,7 +6,7 @@
 //! cargo lab time-scenes [SCENE [RUNS]]
 //! ```
 //!
-//! With the beginning of a scene's name only that one is timed, this many times.
+//! SCENE is the beginning of the only scene's name, RUNS the number of runs.
 
 use std::f64::consts::TAU;
 use std::hint::black_box;
@@ -33,7 +33,7 @@ fn room() -> Vec<Wall> {
     Wall::polyline(&[[0.0, 0.0], [6.0, 0.0], [6.0, 4.0], [0.0, 4.0], [0.0, 0.0]]).collect()
 }
 
-/// A ring of 24 in a room of four walls, with this many poles of 2 cm: its matrix of order 4.
+/// A ring of 24 in a room of four walls, with this many poles of 2 cm: the time of its matrix of order 4.
 fn matrix_ms(poles: usize, asked: Option<u32>) -> (f64, usize) {
     let places = [[1.0, 1.0], [4.5, 1.2], [4.0, 3.2], [1.4, 3.0]];
     let poles = places.iter().take(poles).map(|&[x, y]| Pole::new(x, y, 0.01)).collect();
@@ -78,7 +78,7 @@ fn hall_ms(rows: u32, physics: Physics, asked: Option<u32>) -> (f64, usize) {
     (ms / 24.0, matrix.paths().len())
 }
 
-/// Set I's first alcove with a robot that creeps on: 100 periods.
+/// Times Set I's first alcove with a slowly moving robot: 100 periods.
 fn moving_ms(physics: Physics, room: Option<Room>, asked: Option<u32>) -> (f64, usize) {
     let alcove = Alcove::random(1);
     let motion = Motion::Constant { velocity: Vector::new(0.0, 0.01), turn_rad_s: 0.0 };
@@ -99,7 +99,7 @@ fn driving(at: [f64; 2]) -> Robot {
     Robot { motion: Motion::Constant { velocity: Vector::new(0.14, 0.14), turn_rad_s: 1.0 }, ..ring }
 }
 
-/// Times a reading in 20 periods of these robots in this scene, sound followed up to this order.
+/// Times a reading in 20 periods of these robots in this scene, with sound followed up to this order.
 fn reading_ms(scene: Scene, robots: Vec<Robot>, max_order: u32, asked: Option<u32>) -> (f64, usize) {
     let world = World::new(scene, robots, Noise::default())
         .and_then(|world| world.with_max_order(max_order))
@@ -111,22 +111,22 @@ fn reading_ms(scene: Scene, robots: Vec<Robot>, max_order: u32, asked: Option<u3
     (ms / readings as f64, readings)
 }
 
-/// A room with three poles of 10 cm.
+/// Times a room with three poles of 10 cm.
 fn poles_ms(asked: Option<u32>) -> (f64, usize) {
     let poles = [[1.0, 1.0], [4.5, 1.2], [4.0, 3.2]].map(|[x, y]| Pole::new(x, y, 0.05)).to_vec();
     let scene = Scene::new(room(), poles, Air::default()).expect("a room");
     reading_ms(scene, vec![driving([2.7, 1.9])], 6, asked)
 }
 
-/// A hall of 1,028 walls with two robots that have bodies.
+/// Times a hall of 1,028 walls with two robots that have bodies.
 fn bodies_ms(asked: Option<u32>) -> (f64, usize) {
     let robots = [[24.1, 24.05], [25.2, 24.6]].map(|at| Robot { body: Some(Body::Disc(0.19)), ..driving(at) });
     let scene = Scene::new(pillars(16), vec![], Air::default()).expect("a hall");
     reading_ms(scene, robots.to_vec(), 6, asked)
 }
 
-/// A building like a map of 2,000 by 2,000 cells of 5 cm: 20 by 20 rooms of 5 m with doors of 0.9 m and walls that wave
-/// by up to 3 cm, 47,040 in all.
+/// Times a building like a map of 2,000 by 2,000 cells of 5 cm: 20 by 20 rooms of 5 m with doors of 0.9 m and walls
+/// that wave by up to 3 cm, 47,040 in all.
 fn building_ms(asked: Option<u32>) -> (f64, usize) {
     let (mut drawn, mut walls) = (1_u32, Vec::new());
     for place in 0..840 {
@@ -147,7 +147,7 @@ fn building_ms(asked: Option<u32>) -> (f64, usize) {
     reading_ms(scene, vec![driving([52.4, 52.6])], 5, asked)
 }
 
-/// Two courses of Set II on one core, with a second robot behind or alone.
+/// Times two courses of Set II on one core, with a second robot behind or alone.
 fn set_two_ms(physics: Physics, second: bool, asked: Option<u32>) -> (f64, usize) {
     let second_robot = second.then_some(SECOND_BEHIND);
     let methods = vec![Method::Eeruf.into()];

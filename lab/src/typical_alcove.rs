@@ -1,4 +1,4 @@
-//! The typical alcove of Set I, and where the alcove of `scenes/alcove.toml` stands among them.
+//! The typical alcove of Set I, and the rank of the alcove of `scenes/alcove.toml` among them.
 //!
 //! The rule: of 200 alcoves from 20,000 on, the one whose ranks in four figures (wrong under constant lags; wrong, lost
 //! and starved under EERUF) are nearest to the middle, in sum. `scenes/typical-alcove.toml` is that one.
@@ -59,7 +59,7 @@ fn figures(world: &World) -> Result<[f64; 4], SimulationError> {
     Ok([conventional.wrong_of_all, eeruf.wrong_of_all, lost, eeruf.starved as f64])
 }
 
-/// Returns the share of alcoves below, counting equal ones half.
+/// Returns the share of alcoves with a smaller figure, counting equal ones half.
 fn rank(each: &[[f64; 4]], figure: usize, value: f64) -> f64 {
     let count = |is: fn(&f64, &f64) -> bool| each.iter().filter(|of| is(&of[figure], &value)).count() as f64;
     (count(|a, b| a < b) + 0.5 * count(|a, b| a == b)) / each.len() as f64

@@ -1,6 +1,6 @@
-//! Prints random rings of 16 to 32 sensors that differ, and what the engine finds: `cargo lab uneven-rings
-//! [RINGS [SECONDS [FIRST]]]`, from this seed on. A line of JSON each, in ticks: the problem, period, bound, the
-//! seconds of a core, and each period found with the seconds until then; `benches/peers/cpsat.py` reads them.
+//! Prints random rings of 16 to 32 sensors that differ, and the engine's results: `cargo lab uneven-rings [RINGS
+//! [SECONDS [FIRST]]]`, from this seed on. A line of JSON each, in ticks: the problem, period, bound, the seconds of a
+//! core, and each period found with the seconds until then; `benches/peers/cpsat.py` reads them.
 
 use eeruf_period::engine::Problem;
 use eeruf_period::engine::shortest::shortest;
@@ -20,7 +20,8 @@ impl Random {
     }
 }
 
-/// Two to four neighbours, 15 ticks apart but one pair in four, windows of 15 to 45 ticks, separations of 1 to 3.
+/// Draws a ring: two to four neighbours, 15 ticks apart except one pair in four, windows of 15 to 45 ticks, separations
+/// of 1 to 3.
 fn draw(seed: u64) -> Problem {
     let mut random = Random(seed);
     (0..10).for_each(|_| _ = random.within(0, 1));

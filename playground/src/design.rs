@@ -1,4 +1,4 @@
-//! The shortest period for a ring: what `eeruf design` says, and its certificate.
+//! The shortest period for a ring: the answer of `eeruf design`, and its certificate.
 
 use std::cell::RefCell;
 use std::ops::ControlFlow;
@@ -12,8 +12,8 @@ use serde::Serialize;
 
 use crate::progress::progress;
 
-/// Search budget on the page, in nodes, and for more sensors than [`FEW`], when each node takes many times as long:
-/// about a minute.
+/// Search budget on the page, in nodes, and the smaller one for more sensors than [`FEW`], when each node takes many
+/// times as long: about a minute.
 const BUDGET: u64 = 2_000_000;
 const BUDGET_OF_MANY: u64 = 50_000;
 const FEW: usize = 24;
@@ -32,7 +32,7 @@ pub(crate) struct DesignAnswer {
     /// The change that `t_delta` must cover, and the largest that the schedule allows.
     t_delta_us: u32,
     max_t_delta_us: Option<u32>,
-    /// The smallest interval of two neighbours that must be kept, and that is kept.
+    /// The required and the actual smallest interval between two neighbours.
     min_interval_us: u32,
     kept_interval_us: Option<u32>,
     window_us: u32,

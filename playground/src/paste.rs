@@ -12,24 +12,24 @@ const MOST_POINTS: usize = 2000;
 #[derive(Serialize)]
 pub(crate) struct Pasted {
     verdict: &'static str,
-    /// Lines, as the program prints them.
+    /// The answer, in lines as the program prints them.
     answer: String,
     form: String,
     sensors: Vec<Sensor>,
     /// Guesses with the option of the program that overrides each.
     guesses: Vec<String>,
     damage: Vec<String>,
-    /// True if the points have seconds; else they have the number of the reading.
+    /// True if points have a time in seconds; otherwise they have the number of the reading.
     is_timed: bool,
 }
 
 #[derive(Serialize, Default)]
 struct Sensor {
     name: String,
-    /// True if it reads another's sound, or may.
+    /// True if the sensor reads another's sound, or may.
     is_concerned: bool,
     readings: usize,
-    /// Seconds and metres.
+    /// Points in seconds and metres.
     points: Vec<(f64, f64)>,
 }
 

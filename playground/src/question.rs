@@ -39,7 +39,7 @@ impl MethodAnswer {
     }
 }
 
-/// A result, or one sentence that says what failed.
+/// A result, or one sentence about the failure.
 #[derive(Serialize)]
 #[serde(rename_all = "snake_case")]
 enum Answer<T> {

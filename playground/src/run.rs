@@ -1,4 +1,4 @@
-//! A scene under a firing method: what the sensors read and how good it was.
+//! A scene under a firing method: the readings of the sensors, and their quality.
 
 use eeruf_core::ReadingKind;
 use eeruf_sim::{
@@ -22,7 +22,7 @@ pub(crate) struct Run {
     duration_s: f64,
     /// Sensors that never had a reading accepted.
     blind: Vec<usize>,
-    /// For each sensor: readings, and of them accepted and right, accepted and wrong.
+    /// Counts for each sensor: readings, accepted and right ones, accepted and wrong ones.
     tally: Vec<[u32; 3]>,
     /// Attributions of wrong readings, the commonest first.
     fooled: Vec<Attribution>,
@@ -61,7 +61,7 @@ struct ShownPath {
     corners: Vec<[f64; 2]>,
 }
 
-/// Simulates for this many of the robot's periods, and shows the readings of the first this many seconds.
+/// Simulates this many of the robot's periods, and shows the readings of the first `shown_s` seconds.
 pub(crate) fn run(world: &World, method: Method, periods: u32, shown_s: f64) -> Result<Run, String> {
     if !(1..=MAX_PERIODS).contains(&periods) {
         return Err(format!("{periods} periods; expected 1 to {MAX_PERIODS}"));

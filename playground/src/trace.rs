@@ -3,7 +3,7 @@
 use eeruf_sim::{CrosstalkMatrix, CrosstalkQuery, Limits, Point, Pose, Tracer, World};
 use serde::Serialize;
 
-/// The scene and the ways that sound takes. Metres and radians; sensors from 0.
+/// The scene and the paths of sound. Metres and radians; sensors from 0.
 #[derive(Serialize)]
 pub(crate) struct Traced {
     /// Place and heading of each sensor.

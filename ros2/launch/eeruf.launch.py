@@ -9,7 +9,7 @@ from launch_ros.actions import Node
 
 
 def generate_launch_description():
-    """The node, started again if it ends by itself."""
+    """Return the node, which restarts if it ends by itself."""
     defaults = str(Path(__file__).parents[1] / "config" / "eeruf.yaml")
     arguments = {
         "params_file": (defaults, "parameters, as YAML"),

@@ -200,7 +200,7 @@ fn asked(words: &[String]) -> (clap::Command, String) {
     (command, path)
 }
 
-/// Returns the reason in a user's words.
+/// Returns an error's expectation in a user's words.
 fn expected(why: &str) -> String {
     if let Some(at) = why.find("expected ") {
         return why[at..].to_owned();

@@ -51,7 +51,7 @@ pub(crate) fn claim_of(text: &str) -> String {
     Stated::read(text).map_or_else(String::new, |stated| stated.to_string())
 }
 
-/// The certificate's claim, and whether the search knows more.
+/// The certificate's claim, and a note if the search knows more.
 fn claim(text: &str, design: &RingDesign) -> String {
     let (claim, known) = (claim_of(text), design.bound.unwrap_or_default());
     let is_less = |stated: Stated| stated.micros(stated.bound) < u64::from(known.as_micros());

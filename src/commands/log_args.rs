@@ -120,7 +120,7 @@ pub(crate) fn warn_of_log(file: &Path, report: &Report) -> Result<(), InputError
     report.warnings.iter().try_for_each(|warning| warn(InputError::new(file, warning)))
 }
 
-/// Fails if a part could not be read, or with the reason why no sensor was found.
+/// Fails if a part of the log could not be read, or if no sensor was found, with the reason.
 pub(crate) fn tell_damage(file: &Path, report: &Report) -> Result<(), InputError> {
     match &report.damage[..] {
         [] => {}

@@ -1,4 +1,4 @@
-//! One file for each verb: its arguments, and what it does with them.
+//! One file for each verb: its arguments, and their execution.
 //!
 //! Commands read with `files`, ask the libraries, and hand what they found to `report`; neither knows of them.
 
@@ -83,7 +83,7 @@ pub(crate) struct OutputArgs {
     /// Quote the line that an error in a file is about, as on a terminal
     #[arg(long, hide_short_help = true, global = true)]
     explain: bool,
-    /// Colour errors and warnings; auto does on a terminal, unless NO_COLOR is set
+    /// Colour errors and warnings; auto: on a terminal, unless NO_COLOR is set
     #[arg(long, hide_short_help = true, global = true, value_name = "WHEN", default_value = "auto")]
     color: ColorChoice,
 }
@@ -237,7 +237,7 @@ mod tests {
 
     use super::{Cli, Parser as _, program};
 
-    /// Names of values that are a unit or a kind; a number without a unit is named by its help.
+    /// Placeholders of values that name a unit or a kind; the help must give the unit of any other number.
     const KINDS: [&str; 32] = [
         "RING.toml|SCENE.toml",
         "US",

@@ -64,8 +64,8 @@ impl RoomArgs {
     }
 }
 
-/// Measures a ring file's ways of firing, without a word of its period: `eeruf study RING.toml`. With `all` or rooms
-/// of the user's own it prints every way in every kind of room, with `cost` what the kinds of ways cost.
+/// Measures a ring file's ways of firing, without its period: `eeruf study RING.toml`. With `all` or rooms of the
+/// user's own it prints every way in every kind of room, with `cost` the cost of each kind of way.
 pub(crate) fn study(args: &RoomArgs, file: &Path, as_json: bool, all: bool, cost: bool) -> Result<Answer, InputError> {
     let spec = read_ring(file)?;
     let mut watch = Watch::new();
@@ -89,7 +89,7 @@ pub(crate) fn study(args: &RoomArgs, file: &Path, as_json: bool, all: bool, cost
     .map_err(InputError::from)
 }
 
-/// The recommended way beside one by one, in rooms; or why that cannot be said.
+/// The recommended way beside one by one, in rooms; or the reason why there is none.
 fn three_ways(
     args: &RoomArgs,
     spec: &RingSpec,
@@ -129,8 +129,7 @@ fn three_ways(
     }))
 }
 
-/// Judges the ways of firing a ring, with the schedule of two phases that was found for it; or says why that cannot be
-/// done.
+/// Judges the ways of firing a ring, with the schedule of two phases found for it; or gives the reason why it cannot.
 pub(crate) fn judged(
     args: &RoomArgs,
     spec: &RingSpec,
@@ -142,7 +141,7 @@ pub(crate) fn judged(
     Ok(spec.judge_in_rooms(design, &asked, &|share| goes_on(&watch, share)))
 }
 
-/// The way of firing a ring to recommend, as [`judged`] finds it; or why that cannot be said.
+/// The recommended way of firing a ring, by [`judged`]; or the reason why there is none.
 pub(crate) fn recommended(
     args: &RoomArgs,
     spec: &RingSpec,

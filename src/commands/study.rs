@@ -170,7 +170,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     Ok(Answer::Yes)
 }
 
-/// Trials of each way to choose votes, and as many to report; the second number is for moving scenes.
+/// Number of trials of each way for choosing votes, and again for the report; the second number is for moving scenes.
 const TRIALS: u64 = 60;
 const TRIALS_IF_MOVING: u64 = 20;
 

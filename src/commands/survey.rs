@@ -182,7 +182,7 @@ fn several(args: &Args) -> Result<Answer, InputError> {
     Ok(Answer::Yes)
 }
 
-/// The log of a simulated survey, the paths that there are, and the name of the physics.
+/// The log of a simulated survey, the true paths, and the name of the physics.
 fn simulated(args: &Args, scene: &Path, go: KeepGoing<'_>) -> Result<(FiringLog, Vec<TruePath>, String), InputError> {
     let bad = |error: &dyn std::fmt::Display| InputError::new(scene, error);
     let mut world: World = read_world(scene)?;

@@ -22,7 +22,7 @@ pub(crate) struct Settings {
     pub(crate) deny_warnings: bool,
     /// Lines of any length.
     pub(crate) wide: bool,
-    /// Errors quote lines of files; on a terminal they do anyway.
+    /// Errors quote lines of files; they always do on a terminal.
     pub(crate) explain: bool,
     /// Colours always or never; by default on a terminal unless `NO_COLOR` is set.
     pub(crate) colour: Option<bool>,

@@ -1,5 +1,5 @@
-//! Simulated readings as an MCAP file, for Foxglove, Rerun and whatever reads ROS 2: ranges, poses, the scene, and
-//! along which path each reading came.
+//! Simulated readings as an MCAP file, for Foxglove, Rerun and whatever reads ROS 2: ranges, poses, the scene, and each
+//! reading's path.
 //!
 //! All messages are those of ROS 2, in CDR. Sensors and robots are counted from 1 in the names of topics and frames.
 
@@ -22,7 +22,7 @@ const POSES_S: f64 = 0.05;
 /// Time for which a path is shown.
 const SHOWN_NS: u64 = 120_000_000;
 
-/// Time for which replaced scenes are kept: longer than sound travels.
+/// Time for which replaced scenes are kept, longer than sound travels.
 const KEPT_S: f64 = 10.0;
 
 /// A world and where its robots are.
@@ -242,8 +242,8 @@ fn poses(out: &mut McapWriter, stage: &Stage<'_>, time_s: f64) -> Result<(), Fil
     out.transforms("/tf", now, &transforms)
 }
 
-/// Each reading as a range, what the method accepts beside it, its path, and the firings of the first robot as
-/// `diagnose` reads them.
+/// Writes each reading as a range, its accepted range, its path, and the firings of the first robot as `diagnose` reads
+/// them.
 fn readings(out: &mut McapWriter, stage: &Stage<'_>, run: &Readings) -> Result<(), FileError> {
     let world = stage.world;
     let mut order: Vec<_> = (0..run.len()).collect();

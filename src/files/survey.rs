@@ -1,4 +1,4 @@
-//! A simulated survey: its log, as firmware would write it, and the paths that there are.
+//! A simulated survey: its log, as firmware would write it, and the true paths.
 
 use eeruf_core::{
     Instant, Micros,
@@ -9,7 +9,7 @@ use eeruf_sim::{LockStep, PathsError, World};
 
 use super::firings::CLOCK;
 
-/// A path loud enough to be heard, or one that would be if it were 6 dB louder.
+/// A path loud enough to be heard, or one that would be heard if it were 6 dB louder.
 pub(crate) struct TruePath {
     pub(crate) sender: u8,
     pub(crate) receiver: u8,

@@ -7,7 +7,7 @@ use eeruf_sim::experiments::measure::{Cell, Family, Measured, ONE_A_MINUTE, Oper
 
 use super::table::markdown;
 
-/// Ways of firing, measured by what a robot needs: `measured` is reported, with the votes chosen on `chosen`.
+/// Ways of firing, measured by the needs of a robot: `measured` is reported, with the votes chosen on `chosen`.
 pub(crate) struct Three<'a> {
     pub(crate) chosen: &'a Measured,
     pub(crate) measured: &'a Measured,

@@ -11,10 +11,10 @@ use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::console::{note, settings};
 
-/// After this time the progress line appears.
+/// Time after which the progress line appears.
 const SHOWN_AFTER: Duration = Duration::from_secs(2);
 
-/// Without a terminal a line says how far a task has come after this time, and then once a minute.
+/// Time after which a task without a terminal prints its progress, and then once a minute.
 const SAID_AFTER: Duration = Duration::from_secs(20);
 const SAID_EVERY: Duration = Duration::from_secs(60);
 
@@ -76,7 +76,7 @@ impl Watch {
         Self { began, limit, bar: None, says_at: SAID_AFTER, interrupted: &NEVER }
     }
 
-    /// Forgets a Ctrl-C that ended one task before the next one begins. The time limit is that of all tasks.
+    /// Forgets a Ctrl-C that ended one task before the next one begins. The time limit covers all tasks.
     pub(crate) fn forget_interrupt(&self) {
         self.interrupted.store(false, Ordering::Relaxed);
     }
@@ -108,7 +108,7 @@ impl Watch {
         true
     }
 
-    /// Returns the question whether to go on, for a task that reports no progress.
+    /// Returns a function that tells if a task should continue, for a task that reports no progress.
     pub(crate) fn asked(self, how_far: impl Fn() -> String) -> impl Fn() -> bool {
         let watch = std::cell::RefCell::new(self);
         move || watch.borrow_mut().go_on(&how_far)

@@ -1,4 +1,4 @@
-//! The atlas: written by any number of processes, which may end at any time; it answers in place of the search.
+//! The atlas, written by any number of processes that may end at any time; it answers in place of the search.
 
 use std::process::{Command, Stdio};
 

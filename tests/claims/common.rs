@@ -55,7 +55,7 @@ impl Scratch {
     }
 }
 
-/// A compiler of C, which whoever builds Rust has.
+/// A C compiler, which everyone who builds Rust has.
 pub(crate) const C: &[&str] = &["gcc", "-std=c99"];
 
 /// Returns a compiler of C++, if there is one; without it `cargo xtask c` is skipped with a message.

@@ -1,4 +1,4 @@
-//! Output of `eeruf design --emit rust`, compiled: the compiler has checked the table against its requirements.
+//! Output of `eeruf design --emit rust`, compiled: the compiler checks the table against its requirements.
 
 use std::path::PathBuf;
 

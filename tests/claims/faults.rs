@@ -26,7 +26,7 @@ schedule = { period_us = 60000, t_fire_a_us = [0, 15000, 30000, 45000], t_fire_b
 "#;
 
 const PERIODS: u32 = 200;
-/// When the faults of most tests begin and end, in seconds.
+/// Times at which the faults of most tests begin and end, in seconds.
 const BEGINS: f64 = 3.0;
 const ENDS: f64 = 9.0;
 
@@ -65,7 +65,7 @@ fn without_echo(readings: &Readings, sensor: u8, when: fn(&Readings, usize) -> b
     share(readings, sensor, when, |k| readings.earliest_us[k].is_nan())
 }
 
-/// Without the fault sensors 0 to 3 read walls that they believe, always.
+/// Checks that sensors other than the faulty ones always believe their walls.
 fn others_are_well(readings: &Readings, faulty: &[u8]) {
     for sensor in (0..4).filter(|sensor| !faulty.contains(sensor)) {
         let well = [is_during, is_apart].map(|when| accepted(readings, sensor, when));

@@ -51,7 +51,7 @@ fn listings(document: &str) -> Vec<Listing> {
     found
 }
 
-/// Commands of other tests, or of tools that are not here: their beginnings, and the file that runs the same.
+/// Beginnings of commands that other tests run or that need missing tools, each with the file that runs it.
 const ELSEWHERE: [(&str, &str); 12] = [
     ("cargo xtask test", "xtask/src/test.rs"),
     ("cargo install --path crates/eeruf-ros2", "xtask/src/ros2.rs"),
@@ -76,7 +76,7 @@ const SHORTER: [(&str, &str); 5] = [
     ("lab experiment set-one", "lab experiment set-one --seeds 8 --method eeruf"),
 ];
 
-/// The folder of a reader: a clone's `c`, the examples, and what the guides' readers have: rings and logs.
+/// Makes the folder of a reader: a clone's `c`, the examples, and the rings and logs of the guides.
 fn folder_of_a_reader(document: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name);
@@ -108,7 +108,7 @@ fn folder_of_a_reader(document: &str) -> tempfile::TempDir {
     folder
 }
 
-/// Runs a command of a listing like a reader's shell; returns the fault, if any.
+/// Runs a command of a listing in a shell; returns the fault, if any.
 fn run(command: &str, folder: &Path) -> Option<String> {
     let mut words = command.replace("cargo run --release -- ", "eeruf ").replace("cargo run -- ", "eeruf ");
     for (part, shorter) in SHORTER {

@@ -1,5 +1,5 @@
 //! A ring file means the same everywhere: in a scene, in the tables that `design` emits, in the ring and the driver
-//! that fire by it. Here the file is read by TOML alone, and each of them is asked for what it ended with.
+//! that fire by it. The test reads the file as plain TOML, and compares each of them with it.
 
 use std::collections::BTreeMap;
 
@@ -32,7 +32,7 @@ audible_us = 30_000
 tick_us = 100
 "#;
 
-/// A ring of one make of one's own, for the driver; the file says the window.
+/// A ring of one custom module, for the driver; the file gives the window.
 const ALIKE: &str = r#"
 sensors = 3
 layout = "ring"
@@ -86,7 +86,7 @@ impl Said {
         self.each("window_us").unwrap_or_else(|| far().into_iter().map(|m| 2e6 * m / 343.2).collect())
     }
 
-    /// Windows of a table: sensors that are all alike listen until they may be triggered again.
+    /// Windows of a table: identical sensors listen until they may be triggered again.
     fn listens_us(&self) -> Vec<f64> {
         let lists = ["window_us", "max_range_m", "retrigger_us", "t_delta_us", "jitter_us", "module"];
         let pairs = ["intervals_us", "shared_lines", "together"];
@@ -123,7 +123,7 @@ impl Said {
 struct Table {
     period: u32,
     fire: [Vec<u32>; 2],
-    /// None in the form `toml`, which is a table alone.
+    /// The settings that a driver takes; `None` in the form `toml`, which is a table alone.
     rest: Option<Listening>,
 }
 
@@ -184,7 +184,7 @@ fn of_rust(text: &str) -> Table {
     Table { period: after(text, "period_us: ", ',').unwrap()[0], fire, rest: Some(rest) }
 }
 
-/// The table of a C header, by a program that includes it; and all else that it says.
+/// The table of a C header, from a program that includes it, and all other values of the header.
 fn of_c(emitted: &str, form: usize) -> (Table, BTreeMap<String, Vec<u32>>) {
     let [_, schedule, settings] = FORMS[form];
     let said = run_c("say", emitted, [schedule, settings]).unwrap();
@@ -296,7 +296,7 @@ fn scene_says(file: &str, text: &str, said: &Said, emitted: &str, table: &Table)
     }
 }
 
-/// The settings of the driver of these modules; none if they are not of one kind, or answer otherwise than by pulses.
+/// The settings of the driver of these modules; `None` if they are of several kinds, or do not answer by pulses.
 fn settings(said: &Said, table: &Table) -> Option<Settings> {
     let module = said.modules.first().filter(|first| said.modules.iter().all(|module| module == *first))?;
     let mut settings = Settings::of(module)?;
@@ -352,7 +352,7 @@ fn names_other_kinds(file: &str, form: &str, emitted: &str, said: &Said) {
     assert_eq!(reason, expected.as_deref(), "{file}: {form}");
 }
 
-/// Asks all for what they make of a ring file; true if the driver is one of them.
+/// Checks what every part makes of a ring file; returns true if a driver is among them.
 fn says_the_same_everywhere(file: &str) -> bool {
     let text = std::fs::read_to_string(file).unwrap();
     let said = Said::new(&text);

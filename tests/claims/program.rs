@@ -513,7 +513,7 @@ fn the_version_names_the_commit_of_the_clone() {
     assert!(rest.is_empty() || commit.is_some_and(|commit| commit.len() >= 7), "{said}");
 }
 
-/// Rust ignores a pipe whose reader went away, and printing into it then panics.
+/// Checks that closing a pipe causes no panic: printing into it would panic in Rust.
 #[cfg(unix)]
 #[test]
 fn early_end_of_reading_makes_no_panic() {

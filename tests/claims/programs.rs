@@ -5,7 +5,8 @@ use std::process::Command;
 
 use crate::common::{Scratch, eeruf};
 
-/// The ring file that README shows is one, each language has its program, and none overwrites another.
+/// Checks that README's four lines are a ring file, that each language has its program, and that none overwrites
+/// another.
 #[test]
 fn readme_goes_from_four_lines_to_a_program_in_each_language() {
     let readme = include_str!("../../README.md");
@@ -75,7 +76,7 @@ fn programs_that_cannot_be_are_refused_by_what_is_expected() {
     }
 }
 
-/// Sketches draw it on a board whose chip has no number, and keep it.
+/// Checks that sketches draw a seed on a board whose chip has no number, and keep it.
 #[test]
 fn six_boards_with_one_sketch_draw_six_seeds() {
     let (folder, _) = Scratch::new("robot.toml", "");

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// A run that takes longer counts as hanging.
+/// Time after which a run counts as hanging.
 const HANGS_AFTER: Duration = Duration::from_secs(120);
 
 struct Ended {
@@ -54,7 +54,7 @@ const FIRINGS: &str = "sensor,fired_us,period,phase,t_echo_us\n0,0,0,0,5000\n1,2
 const MAP: &str = "image: cell.pgm\nresolution: 0.05\norigin: [0, 0, 0]\n";
 const LOG: &str = "a,b\n1.0,2.0\n1.0,2.0\n1.1,2.1\n";
 
-/// The files of the corpus, beside those that are right.
+/// Writes the files of the corpus besides the right ones.
 fn write_files(folder: &Path) {
     let files: [(&str, &[u8]); 21] = [
         ("ring.toml", RING.as_bytes()),
@@ -327,7 +327,7 @@ fn joined(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ")
 }
 
-/// The text with one thing replaced, in a file of the folder, and the words that name it.
+/// Writes the text with one thing replaced into a file of the folder; returns the words that name it.
 fn spoil<'a>(folder: &Path, (words, text, old, new, _): Spoilt<'a>) -> Vec<&'a str> {
     assert!(text.contains(old), "{old}");
     let spoilt = if old.is_empty() { text.to_owned() } else { text.replacen(old, new, 1) };

@@ -92,7 +92,7 @@ fn recording_has_each_reading_once() {
     assert!(paths > 200, "{paths}");
 }
 
-/// The messages of the topics that end so, with their times in seconds and their topics, in the file's order.
+/// The messages of topics with this ending, with their times in seconds and their topics, in the file's order.
 fn messages(file: &std::path::Path, ending: &str) -> Vec<(f64, String, Value)> {
     let all = crate::ros2::messages(file).into_iter().filter(|message| message.topic.ends_with(ending));
     all.map(|message| ((message.log_time - START_NS) as f64 * 1e-9, message.topic, message.value)).collect()

@@ -13,7 +13,7 @@ pub(crate) struct Message {
     pub(crate) value: Value,
 }
 
-/// All messages of a file, each of which must be one of ROS 2 that its definition fits to the last byte.
+/// All messages of a file, each of which must be of ROS 2 and fit its definition to the last byte.
 pub(crate) fn messages(file: &Path) -> Vec<Message> {
     let bytes = std::fs::read(file).unwrap();
     let all = mcap::MessageStream::new(&bytes).unwrap().map(Result::unwrap);

@@ -14,8 +14,8 @@ pub(crate) fn rings() -> Vec<PathBuf> {
     files.filter(|file| !file.file_stem().unwrap().to_str().unwrap().starts_with("table-")).collect()
 }
 
-/// Builds and runs a program of `emitted/` with a table, or with what a flow ring is set up with, and the constants of
-/// these names in it; its output, which is the error if it fails.
+/// Builds and runs a program of `emitted/` with a table, or with the setup of a flow ring, whose constants have these
+/// names; returns its output, which is the error if it fails.
 pub(crate) fn run_c(source: &str, table: &str, [schedule, settings]: [&str; 2]) -> Result<String, String> {
     let (folder, header) = Scratch::new("ring.h", table);
     // Arduino's class is not what is tried, but the table and the library below it.

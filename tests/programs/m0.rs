@@ -1,5 +1,5 @@
-//! The crate of `eeruf design --program rust` on an emulated Cortex-M0 whose modules are each before a wall of their
-//! own, beside other work: the readings after the first of each, how many accepted, how many of them wrong.
+//! The crate of `eeruf design --program rust` on an emulated Cortex-M0 whose modules each stand before a wall of their
+//! own, with other work: the readings after the first of each, how many are accepted, how many of them wrong.
 #![no_std]
 #![no_main]
 

@@ -1,4 +1,4 @@
-//! `cargo xtask api`: the public items of the crates that firmware stands on, listed, counted and held against limits.
+//! `cargo xtask api`: the public items of the crates that firmware uses, listed, counted and compared with limits.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -23,7 +23,7 @@ const NAMES_AT_ROOT: usize = 45;
 /// The most public types of `eeruf-core`.
 const TYPES: usize = 77;
 
-/// Lists each crate's interface, with all features, and holds that of `eeruf-core` against [`NAMES_AT_ROOT`] and
+/// Lists each crate's interface, with all features, and compares that of `eeruf-core` with [`NAMES_AT_ROOT`] and
 /// [`TYPES`]; no type may be under two paths.
 pub(crate) fn api() -> Result<()> {
     for name in CRATES {
@@ -49,7 +49,7 @@ fn front_door(api: &str) -> Result<()> {
     Ok(())
 }
 
-/// Each method of a ring is called by a model that holds it against its promises.
+/// Checks that each method of a ring is called by a model that checks its promises.
 fn all_are_fuzzed(api: &str) -> Result<()> {
     let models = MODELS.split_whitespace().map(fs::read_to_string).collect::<Result<String, _>>()?;
     let methods = api.lines().filter(|line| line.contains(" fn ") && line.contains("self")).filter_map(declared);

@@ -25,7 +25,7 @@ use crate::steps::{Steps, command, empty, run};
 /// Folder in which it is packed, built and run.
 const TARGET: &str = "target/arduino";
 
-/// Wiring of an example: a trigger and an echo for each module; and whether it is run where time is short.
+/// Wiring of an example: a trigger and an echo for each module; and true if it runs in the short test.
 struct Example {
     name: &'static str,
     triggers: &'static [u8],
@@ -101,7 +101,7 @@ pub(crate) fn arduino(plan: &Plan, steps: &mut Steps) {
     steps.step("other work in loop(), a corner", || loads::run(&library, None, false));
 }
 
-/// The library as one installs it, its files and those of `c/`: packed as the `.zip` that the IDE takes, and unpacked
+/// Packs the library as it is installed, its files and those of `c/`, as the `.zip` that the IDE takes, and unpacks it
 /// into a folder `libraries`, as the IDE does.
 pub(crate) fn pack() -> Result<PathBuf> {
     let target = Path::new(TARGET);
@@ -123,7 +123,7 @@ pub(crate) fn pack() -> Result<PathBuf> {
     Ok(libraries.join("Eeruf"))
 }
 
-/// Compiles library and sketches against what the cores that its properties name declare, as `tests/arduino` has it.
+/// Compiles library and sketches against the declarations of the supported cores in `tests/arduino`.
 fn cores(library: &Path) -> Result<()> {
     let properties = fs::read_to_string(library.join("library.properties"))?;
     let cores = properties.lines().find_map(|line| line.strip_prefix("architectures=")).context("no architectures")?;

@@ -43,8 +43,8 @@ pub(crate) fn check_listings() -> Result<()> {
     documents()?.iter().try_for_each(|document| check_listings_of(document))
 }
 
-/// The lines are those from the first that contains the text after `from` to the next that contains the text after
-/// `to`.
+/// Compares the listings of a document: each holds the lines from the first that contains the text after `from` to the
+/// next that contains the text after `to`.
 fn check_listings_of(document: &str) -> Result<()> {
     let text = fs::read_to_string(document)?;
     let mut rest = text.as_str();

@@ -1,5 +1,5 @@
-//! The C library in `c/` and what stands on it: strict compilers, what a caller may do wrong, the sample for Zephyr,
-//! equality with the Rust crates under sanitizers, MicroPython's class.
+//! The C library in `c/` and its users: strict compilers, misuse by callers, the sample for Zephyr, equality with the
+//! Rust crates under sanitizers, MicroPython's class.
 
 use std::fmt::Write as _;
 use std::path::{Path, absolute};
@@ -102,7 +102,7 @@ fn sample(target: &Path) -> Result<()> {
     run(&mut Command::new(program))
 }
 
-/// The component in `ESPHome`, of which the test replaces the clock and the pins of the host platform.
+/// Tests the component in `ESPHome`; the test replaces the clock and the pins of the host platform.
 fn esphome(target: &Path) -> Result<()> {
     let python = crate::python::environment(&target.join("python"), &["esphome==2026.6.5"])?;
     let mut test = Command::new("sh");
@@ -110,7 +110,7 @@ fn esphome(target: &Path) -> Result<()> {
     run(test.arg(crate::toolchain::program()?))
 }
 
-/// The macros that stand for the devicetree: a specification of each pin, and the list of them.
+/// The macros that replace the devicetree: a specification of each pin, and the list of them.
 fn overlay_header(overlay: &str) -> Result<String> {
     let mut header = "#include <zephyr/device.h>\nextern const struct device ports[8];\n".to_owned();
     for list in ["trigger_gpios", "echo_gpios"] {
@@ -133,7 +133,7 @@ fn overlay_header(overlay: &str) -> Result<String> {
     Ok(header)
 }
 
-/// The comparison of `eeruf-c-equal`, with the C side watched for each byte out of place.
+/// Compares C and Rust by `eeruf-c-equal`, with sanitizers on the C side.
 fn equal_under_sanitizers() -> Result<()> {
     let host = output(Command::new("rustc").args(["--print", "host-tuple"]))?;
     let asan = output(Command::new("gcc").arg("-print-file-name=libasan.so"))?;
@@ -147,7 +147,7 @@ fn equal_under_sanitizers() -> Result<()> {
         .env(runner, format!("env LD_PRELOAD={asan}")))
 }
 
-/// Holds `c/micropython/` against the corpus that a test of the core writes, on simulated modules and with faults of a
+/// Compares `c/micropython/` with the corpus that a test of the core writes, on simulated modules and with faults of a
 /// line, in MicroPython's WebAssembly build and in CPython.
 pub(crate) fn micropython() -> Result<()> {
     need("node --version", "apt install nodejs")?;

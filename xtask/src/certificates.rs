@@ -23,7 +23,7 @@ const FOLDER: &str = "target/certificates";
 /// The table's intervals and separations, see docs/explanation/search.md.
 const WINDOWS_MS: [u32; 4] = [15, 30, 45, 60];
 pub(crate) const TABLE: [u32; 4] = [8, 12, 16, 24];
-/// The longest that the checker may take for a file.
+/// Longest time that the checker may take for a file.
 const MOST: Duration = Duration::from_secs(60);
 
 pub(crate) fn run_all(plan: &Plan, steps: &mut Steps) {

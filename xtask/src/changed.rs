@@ -7,8 +7,8 @@ use cargo_metadata::{Metadata, Package};
 
 use crate::steps::output;
 
-/// The files that differ from where the branch left the main one, or on the main one itself from the last commit; with
-/// what is not committed.
+/// The files that differ from the point where the branch left the main one, or on the main branch from the last commit,
+/// including uncommitted changes.
 pub(crate) fn files() -> Result<Vec<String>> {
     let git = |args: &[&str]| output(Command::new("git").args(args)).ok();
     let head = git(&["rev-parse", "HEAD"]).context("git rev-parse HEAD fails")?;
@@ -24,8 +24,8 @@ pub(crate) fn files() -> Result<Vec<String>> {
     Ok(changed.lines().chain(new.lines()).map(str::to_owned).collect())
 }
 
-/// The packages that hold these files. A file belongs to the innermost package around it; of the root package only what
-/// Cargo builds counts, not documents.
+/// The packages that hold these files. A file belongs to the innermost package around it; in the root package only
+/// files that Cargo builds count, not documents.
 pub(crate) fn packages<'a>(metadata: &'a Metadata, files: &[String]) -> Vec<&'a Package> {
     let folder = |package: &Package| package.manifest_path.with_file_name("");
     let mut packages = metadata.workspace_packages();

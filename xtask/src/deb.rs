@@ -1,5 +1,5 @@
-//! `cargo xtask deb`: the Debian package of `eeruf-ros2` with its systemd unit, by cargo-deb and what
-//! `crates/eeruf-ros2/Cargo.toml` says to it, and whether it works in a clean root.
+//! `cargo xtask deb`: the Debian package of `eeruf-ros2` with its systemd unit, built by cargo-deb with the settings in
+//! `crates/eeruf-ros2/Cargo.toml`, and tried in a clean root.
 
 use std::path::{Path, absolute};
 use std::process::{Command, Stdio};

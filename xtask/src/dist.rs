@@ -84,12 +84,12 @@ fn tool(name: &str) -> PathBuf {
 struct Compiler {
     /// Environment of a build that uses it.
     environment: Vec<(&'static str, &'static str)>,
-    /// Compilers that come from different places must not share a folder.
+    /// Folder of the builds; compilers from different places must not share one.
     target_folder: &'static str,
 }
 
 impl Compiler {
-    /// The compiler at hand, where it has the target; else the one whose sources of the standard library are here.
+    /// The default compiler if it has the target; else the one whose sources of the standard library are here.
     fn of(target: &str) -> Result<Self> {
         let has_sources = |root: &Path| root.join("lib/rustlib/src/rust/library/Cargo.lock").exists();
         if has_library("std", target) {
@@ -109,7 +109,7 @@ impl Compiler {
         ))
     }
 
-    /// A build with it, like one in any other folder: paths are named from it, times are the commit's.
+    /// Sets up a reproducible build: paths are relative to the folder, times are the commit's.
     fn set_up(&self, command: &mut Command) -> Result<()> {
         let root = env::current_dir()?;
         let home = env::var_os("HOME").map(PathBuf::from).unwrap_or_default();
@@ -137,8 +137,8 @@ impl Compiler {
     }
 }
 
-/// Builds the wheel, and packs it so that it is alike in any folder. Its stub has the docstrings of a module that this
-/// machine can load, as its own may be for another.
+/// Builds the wheel, and packs it reproducibly. Its stub takes the docstrings of a module that this machine can load,
+/// since the wheel's own may be for another machine.
 fn wheel(target: &str, system: &str) -> Result<PathBuf> {
     let compiler = Compiler::of(target)?;
     let to = Path::new("target/dist").join(target);

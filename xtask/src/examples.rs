@@ -1,5 +1,4 @@
-//! `cargo xtask examples`: the programs in `examples/` that one flashes onto a board. Each is built and linked as its
-//! README says; none is run.
+//! `cargo xtask examples`: builds and links the programs in `examples/` for boards, as their READMEs say; runs none.
 
 use std::path::{Path, absolute};
 use std::process::Command;
@@ -17,7 +16,7 @@ pub(crate) const BOARDS: [(&str, &str); 3] = [
     ("esp32-c3", "riscv32imc-unknown-none-elf"),
 ];
 
-/// All of them, or the one that is named.
+/// Builds all examples, or the named one.
 pub(crate) fn examples(only: Option<&str>, steps: &mut Steps) {
     let is_asked_for = |board: &str| only.is_none_or(|only| only == board);
     for (board, target) in BOARDS.into_iter().filter(|(board, _)| is_asked_for(board)) {

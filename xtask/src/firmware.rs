@@ -46,9 +46,8 @@ pub(crate) struct Plan {
     board: Option<String>,
 }
 
-/// Builds, runs and measures everything, or what there is for one board; prints the tables of
-/// `tests/data/boards.txt`, and compares them with what stands there or writes them. If it is for all boards, the
-/// programs are linted, too.
+/// Builds, runs and measures everything, or only one board; prints the tables of `tests/data/boards.txt`, and compares
+/// them with the file or writes it. For all boards it also lints the programs.
 pub(crate) fn run_all(plan: &Plan, steps: &mut Steps) {
     if plan.board.is_none() {
         steps.step("lint of the firmware", lint);
@@ -101,7 +100,7 @@ fn image(board: &Board, name: &str) -> Result<PathBuf> {
     Ok(Path::new("firmware").join(target_folder(&cargo)).join(board.target).join("release").join(name))
 }
 
-/// Runs an image, with `2^shift` ns an instruction. Returns its output if it leaves with 0 within five minutes.
+/// Runs an image, with `2^shift` ns an instruction. Returns its output if it exits with 0 within five minutes.
 fn run_image(board: &Board, name: &str, shift: u32) -> Result<String> {
     qemu(board, &image(board, name)?, shift)
 }
@@ -116,8 +115,7 @@ fn emulator(board: &Board, image: &Path, shift: u32) -> Command {
     qemu
 }
 
-/// The command that runs the ring that speaks over the board's serial line, as a JSON list; `SERIAL` in it stands for
-/// the line.
+/// The command for the ring that sends frames over the board's serial line, as a JSON list, with `SERIAL` for the line.
 pub(crate) fn serial_board() -> Result<String> {
     let [_, lm3s6965, ..] = &BOARDS;
     need(&format!("{} --version", lm3s6965.qemu), "apt install qemu-system-arm")?;
@@ -175,7 +173,7 @@ fn c_example(board: &Board) -> Result<()> {
     Ok(())
 }
 
-/// The command that runs a program on the emulated Cortex-M0, built in this folder from its manifest and its source.
+/// The command for a program on the emulated Cortex-M0, built in this folder from its manifest and its source.
 pub(crate) fn on_m0(folder: &Path, name: &str, manifest: &str, main: &str) -> Result<Command> {
     let [microbit, ..] = &BOARDS;
     fs::create_dir_all(folder.join("src"))?;
@@ -187,7 +185,7 @@ pub(crate) fn on_m0(folder: &Path, name: &str, manifest: &str, main: &str) -> Re
     Ok(emulator(microbit, &target.join(microbit.target).join("release").join(name), 6))
 }
 
-/// Flash and RAM of an image: the sections that are loaded, and those that are not but for the stack.
+/// Flash and RAM of an image: loaded sections, and sections without contents except the stack.
 fn sections(board: &Board, name: &str) -> Result<(u64, u64)> {
     let image = image(board, name)?;
     let listing = llvm("size", &["-A"], &image)?;
@@ -210,7 +208,7 @@ fn sections(board: &Board, name: &str) -> Result<(u64, u64)> {
     Ok((flash, ram))
 }
 
-/// Debian's LLVM tools have their version in the name.
+/// Runs one of Debian's LLVM tools, whose names contain the version.
 fn llvm(tool: &str, args: &[&str], image: &Path) -> Result<String> {
     let mut names = [format!("llvm-{tool}-22"), format!("llvm-{tool}")].into_iter();
     match names.find(|name| output(Command::new(name).arg("--version")).is_ok()) {

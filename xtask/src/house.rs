@@ -81,7 +81,7 @@ fn wrong_openings(text: &str) -> Vec<(usize, String)> {
     (1..).zip(text.lines()).filter_map(wrong).collect()
 }
 
-/// Returns the lines of a Rust file that break a rule, counted from 1, and the rule.
+/// Returns the lines of a Rust file that break a rule, counted from 1, with the rule.
 fn broken_rules(text: &str) -> Vec<(usize, String)> {
     let mut broken = wrong_openings(text);
     for (line, words) in (1..).zip(text.lines()) {

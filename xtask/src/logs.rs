@@ -1,5 +1,5 @@
 //! `cargo xtask logs`: measurements of logs that take minutes: bags of a million messages, as `rosbags` writes them,
-//! who fools whom in alcoves and while driving, and the data set. The tests of it are in `cargo xtask test`.
+//! diagnoses in alcoves and while driving, and the data set. Its tests are in `cargo xtask test`.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -13,8 +13,8 @@ use crate::steps::{Steps, empty, output, run, run_line};
 const HOME: &str = "target/logs";
 /// Topics, and messages on each: a million, and a tenth of that.
 const SIZES: [(u32, [u32; 2]); 2] = [(8, [125_000, 12_500]), (24, [41_667, 4_167])];
-/// Scenes in which senders are named, as `cargo lab diagnose-places` takes it, and the least share in per cent that is
-/// named; in the paper's two phases nobody can be.
+/// Scenes in which senders are named, as arguments of `cargo lab diagnose-places`, and the least share in percent that
+/// must be named; none can be in the paper's two phases.
 const SENDERS: [(&str, f64); 4] = [
     ("40000 200 flow 1000 plain", 60.0),
     ("40000 200 flow 1000 default", 60.0),
@@ -57,7 +57,8 @@ fn bags(topics: u32, messages: [u32; 2]) -> Result<()> {
     replayed
 }
 
-/// Holds names of senders against the simulator's knowledge: this share of foreign readings, 99 % of the names right.
+/// Compares names of senders with the simulator's knowledge: at least this share of foreign readings is named, 99 % of
+/// the names correctly.
 fn senders(places: &str, least: f64) -> Result<()> {
     let said = output(Command::new("cargo").args(["lab", "diagnose-places"]).args(places.split(' ')))?;
     println!("{said}");
@@ -72,7 +73,7 @@ fn senders(places: &str, least: f64) -> Result<()> {
     Ok(())
 }
 
-/// The data set, whose check sum stands on its card, by the command that stands there.
+/// Writes the data set and compares its check sum with that on its card, by the command on the card.
 fn data_set() -> Result<()> {
     let folder = Path::new(HOME).join("dataset");
     empty(&folder)?;

@@ -1,7 +1,7 @@
 //! The project's own commands.
 //!
 //! `cargo xtask test` runs every check there is, the cheap ones first. A check whose tools are not installed is
-//! skipped, and says loudly what to install; with `--nothing-skipped`, as in CI, that counts as a failure.
+//! skipped, and prints what to install; with `--nothing-skipped`, as in CI, that counts as a failure.
 
 mod api;
 mod arduino;

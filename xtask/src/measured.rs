@@ -16,11 +16,11 @@ const MEASURED: &str = "<!-- measured: ";
 /// The table that names the compiler of each board's figures.
 pub(crate) const COMPILERS: &str = "compilers";
 
-/// Part of the names of the tables whose figures do not depend on the compiler.
+/// Part of the names of tables whose figures do not depend on the compiler.
 const SIMULATED: &str = "in a simulated world";
 
-/// Largest difference of a timing, as a share of the larger one and besides: the emulator does not take every interrupt
-/// at the very same instruction.
+/// Tolerance of a timing, as a share of the larger one and in addition: the emulator does not take every interrupt at
+/// the same instruction.
 const TIMING_SHARE: f64 = 0.1;
 const TIMING_BESIDES: f64 = 40.0;
 

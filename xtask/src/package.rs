@@ -9,7 +9,7 @@ use fs_err as fs;
 
 use crate::steps::{Steps, empty, run};
 
-/// Returns the folder in which the tarballs are unpacked: no folder above it has a manifest.
+/// Returns the folder for unpacked tarballs: no folder above it has a manifest.
 fn folder() -> PathBuf {
     std::env::temp_dir().join("eeruf-package")
 }

@@ -22,7 +22,7 @@ const SOURCES: &str = "playground/page";
 const TESTS: &str = "playground/tests";
 /// The folder for a server.
 const FOLDER: &str = "target/page/folder";
-/// The one file for a disk, and the scripts that are bundled for it: browsers load no modules from a disk.
+/// The single file for a disk, and the scripts bundled for it: browsers load no modules from a disk.
 const SINGLE: &str = "target/page/who-fools-whom.html";
 const BUNDLED: &str = "target/page/bundled";
 /// The command that makes the engine smaller, with the features of WebAssembly that the compiler may use.
@@ -143,7 +143,7 @@ fn bundle(entry: &str) -> Result<String> {
     output(esbuild.arg(format!("{BUNDLED}/{entry}")))
 }
 
-/// Encodes the engine as letters: packed first, since letters pack badly.
+/// Encodes the engine as text: compressed first, since text compresses badly.
 fn packed(engine: &[u8]) -> Result<String> {
     let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
     let packed = encoder.write_all(engine).and_then(|()| encoder.finish());
@@ -164,7 +164,7 @@ fn install() -> Result<()> {
     Ok(())
 }
 
-/// Makes what the tests need beside the page: types without a fault, and the program that the engine is held against.
+/// Prepares the tests of the page: checks types, and builds the program that the engine is compared with.
 fn prepare() -> Result<()> {
     npm(TESTS, "run --silent types")?;
     crate::toolchain::program().map(drop)

@@ -1,9 +1,9 @@
 //! Quotations of programs' output in documents: `<!-- printed by: COMMAND -->` stands before it, `<!-- end -->` after
 //! it.
 //!
-//! The command is `eeruf ARGUMENTS` or `cargo ARGUMENTS`. Words in brackets say more, as in
-//! `<!-- printed by (large, decimals are timings): COMMAND -->`: what takes long, and where numbers with a decimal
-//! point are timings, which are not compared.
+//! The command is `eeruf ARGUMENTS` or `cargo ARGUMENTS`. Words in brackets qualify it, as in `<!-- printed by (large,
+//! decimals are timings): COMMAND -->`: what takes long, and where numbers with a decimal point are timings, which are
+//! not compared.
 
 use std::process::Command;
 
@@ -96,7 +96,7 @@ fn unfenced(body: &str) -> &str {
     body.strip_prefix(FENCE).map_or(body, |inner| inner.trim_end_matches("```").trim())
 }
 
-/// Standard output of a command. Where it is not large, the lab is built as the tests are, not once more.
+/// Standard output of a command. Unless it is large, the lab is built as for the tests, to save a build.
 fn output_of(mark: &Mark<'_>) -> Result<String> {
     let command = mark.command;
     println!("{command}");
@@ -116,7 +116,7 @@ fn output_of(mark: &Mark<'_>) -> Result<String> {
     output(process.args(words))
 }
 
-/// The text with each number that has a decimal point left out, and without the spaces that align columns.
+/// The text without numbers that have a decimal point, and without the spaces that align columns.
 fn without_decimals(text: &str) -> String {
     let is_timing = |word: &str| word.contains('.') && word.replace(',', "").parse::<f64>().is_ok();
     let words = text.split(|letter: char| letter.is_whitespace() || "()".contains(letter));

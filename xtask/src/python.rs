@@ -1,5 +1,5 @@
-//! `cargo xtask python`: builds the wheel once, installs it into a virtual environment of its own, and holds it against
-//! its tests, its types and its examples, and against what Rust says.
+//! `cargo xtask python`: builds the wheel once, installs it into a virtual environment of its own, and runs its tests,
+//! types and examples, and the comparison with Rust.
 
 use std::env::consts::EXE_SUFFIX;
 use std::path::{Path, PathBuf, absolute};
@@ -56,8 +56,8 @@ fn wheel(python: &Path, folder: &Path) -> Result<PathBuf> {
     only_file(folder)
 }
 
-/// Packs the sources, and has Cargo read their manifests away from the repository by checking the least package: what
-/// it cannot read names a file that was not packed. Building all of it is left to `release`.
+/// Packs the sources, and has Cargo read their manifests outside the repository by checking the smallest package: an
+/// error names a file that was not packed. `release` builds all of it.
 fn sources_are_whole(python: &Path, folder: &Path) -> Result<()> {
     empty(folder)?;
     run(Command::new(python).args(["-m", "maturin", "sdist", "--out"]).arg(folder))?;
@@ -68,8 +68,8 @@ fn sources_are_whole(python: &Path, folder: &Path) -> Result<()> {
     run(Command::new("cargo").args(["check", "--quiet", "--package", "eeruf-core", "--manifest-path"]).arg(manifest))
 }
 
-/// Writes the reference, made of docstrings and stubs, into a folder: of the wheel that `EERUF_WHEEL` names, or of one
-/// that is built now.
+/// Writes the reference from docstrings and stubs into a folder: of the wheel that `EERUF_WHEEL` names, or of one built
+/// now.
 pub(crate) fn reference(folder: &Path) -> Result<()> {
     let wheel = std::env::var("EERUF_WHEEL").unwrap_or_else(|_| ".".to_owned());
     // Annotations name what they come from.
@@ -111,8 +111,8 @@ fn tested() -> Result<PathBuf> {
     environment(home, &["--group", "test", "numpy"])
 }
 
-/// Tries a user's first steps: the wheel, or the source distribution, in an empty environment, the README's lines, and
-/// the program that comes along.
+/// Tries a user's first steps in an empty environment: the wheel or the source distribution, README's lines, and the
+/// program that comes with it.
 pub(crate) fn fresh(distribution: &Path) -> Result<()> {
     let home = Path::new("target/python-fresh");
     empty(home)?;

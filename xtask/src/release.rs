@@ -10,7 +10,7 @@ use fs_err as fs;
 
 use crate::steps::{Steps, empty, need, output, run, run_line};
 
-/// Steps that only a person may take.
+/// Steps left to a person.
 const REMAINS: &str = "
 What remains for a person, in this order (docs/project/releasing.md says how):
   1. read CHANGELOG.md once more as a user would, and the site (cargo xtask site)

@@ -1,5 +1,5 @@
 //! `cargo xtask ros2`: the ring of `firmware/hil` on an emulated board, its serial line, the node `eeruf-ros2`, and
-//! Cyclone DDS, Fast DDS and pymavlink, which must receive what the ring read. Then `ros2/` as a package of ROS 2.
+//! Cyclone DDS, Fast DDS and pymavlink, which must receive the ring's readings; then `ros2/` as a ROS 2 package.
 
 use std::path::{Path, PathBuf, absolute};
 use std::process::Command;
@@ -45,8 +45,8 @@ fn fast_dds() -> Result<PathBuf> {
     Ok(program)
 }
 
-/// Builds `ros2/` with colcon and ament as Debian has them, around the program that is already built, and looks at what
-/// is installed. Launch files are only compiled: Debian has no `launch`.
+/// Builds `ros2/` with colcon and ament as Debian has them, around the program that is already built, and checks the
+/// installed files. Launch files are only compiled: Debian has no `launch`.
 pub(crate) fn package() -> Result<()> {
     need("colcon build --help", "apt install colcon python3-colcon-ros python3-colcon-cmake ament-cmake")?;
     let program = built("eeruf-ros2")?;

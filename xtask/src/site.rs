@@ -119,7 +119,7 @@ fn links_lead_somewhere() -> Result<()> {
     Ok(())
 }
 
-/// Returns the files below a folder that have this ending.
+/// Returns the files below a folder with this ending.
 fn files(folder: &str, ending: &str) -> Result<Vec<PathBuf>> {
     let found = output(Command::new("find").args([folder, "-name", &format!("*.{ending}")]))?;
     Ok(found.lines().map(PathBuf::from).collect())

@@ -94,17 +94,17 @@ impl Steps {
     }
 }
 
-/// The number of steps that passed, of the line that sums them up.
+/// The number of steps that passed, from the line that sums them up.
 fn passed_in(line: &str) -> Option<u32> {
     let (passed, _) = line.ends_with(" skipped").then(|| line.split_once(" passed, "))??;
     passed.parse().ok()
 }
 
-/// Commands of this program that run one after the other beside the steps, on what processors those leave idle.
+/// Commands of this program that run one after the other beside the steps, on idle processors.
 pub(crate) struct Beside(JoinHandle<Vec<(String, io::Result<String>)>>);
 
 impl Beside {
-    /// Starts the first; each writes what it says to a file of its own in `target/beside`.
+    /// Starts the first command; each writes its output to a file of its own in `target/beside`.
     pub(crate) fn begin(commands: &'static [&'static [&'static str]]) -> Self {
         Self(thread::spawn(|| {
             commands.iter().map(|arguments| (arguments.join(" "), said_to_file(arguments))).collect()
@@ -180,7 +180,7 @@ pub(crate) fn empty(folder: impl AsRef<Path>) -> Result<()> {
     Ok(fs::create_dir_all(folder)?)
 }
 
-/// A text with parts replaced, each of which must stand in it.
+/// A text with parts replaced, each of which must occur in it.
 pub(crate) fn edited(text: &str, parts: &[(&str, &str)]) -> Result<String> {
     parts.iter().try_fold(text.to_owned(), |text, (from, to)| {
         ensure!(text.contains(from), "no `{from}` in the text that it should be replaced in");

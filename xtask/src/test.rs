@@ -1,4 +1,4 @@
-//! `cargo xtask test`: all that must hold before a change goes in; with `--quick` the part that takes two minutes.
+//! `cargo xtask test`: every check that a change must pass; with `--quick` those that take two minutes.
 
 use std::collections::BTreeMap;
 use std::process::{Command, ExitCode};
@@ -10,7 +10,7 @@ use crate::steps::{Beside, Steps, need, run, run_component, run_line};
 use crate::toolchain::{cargo_of_version, program, version_of};
 use crate::{changed, printed};
 
-/// Steps that take one thread most of the time: on emulated processors, and of C.
+/// Steps that mostly take one thread: emulators, and C.
 const BESIDE: [&[&str]; 4] = [&["firmware"], &["arduino", "--short"], &["c"], &["micropython"]];
 
 /// The first steps of both lanes.

@@ -1,4 +1,4 @@
-//! Cargo by purpose: for a declared minimum version, or a target without an operating system; and what it has built.
+//! Cargo by purpose: for a declared minimum version, or a target without an operating system; and its results.
 //!
 //! Compilers that come from different places must not share a target directory.
 
@@ -24,7 +24,7 @@ pub(crate) fn version_of(rustc: &str) -> Result<String> {
 
 /// A `cargo` that compiles with this minor version of Rust ("1.85").
 ///
-/// That is the default one, one of rustup's, or the compiler that the environment variable `EERUF_RUSTC_1_85` names.
+/// It is the default compiler, one of rustup's, or the one that the environment variable `EERUF_RUSTC_1_85` names.
 pub(crate) fn cargo_of_version(version: &str) -> Result<Command> {
     let is_it = |command: &mut Command| {
         output(command.arg("--version")).is_ok_and(|said| said.starts_with(&format!("rustc {version}.")))
@@ -62,8 +62,8 @@ pub(crate) fn has_library(library: &str, target: &str) -> bool {
 
 /// A `cargo` that compiles for a target without an operating system; the caller adds `build --target` and the rest.
 ///
-/// That is rustup's if the target is installed; else Debian's, which builds `core` from its sources, and for
-/// WebAssembly `std` too.
+/// It is rustup's if the target is installed; else Debian's, which builds `core` from its sources, and for WebAssembly
+/// `std` too.
 pub(crate) fn cargo_for_target(target: &str) -> Result<Command> {
     if has_library("core", target) {
         let mut cargo = Command::new("cargo");
@@ -88,18 +88,18 @@ pub(crate) fn cargo_for_target(target: &str) -> Result<Command> {
     ))
 }
 
-/// Returns true if a command is Debian's `cargo`, whose standard library has frames that are known.
+/// Returns true if a command is Debian's `cargo`, whose standard library has known frame sizes.
 pub(crate) fn is_debian(cargo: &Command) -> bool {
     cargo.get_program() == DEBIAN_CARGO
 }
 
-/// The folder that a `cargo` of [`cargo_for_target`] builds in, below where it runs.
+/// The folder below the current one in which a `cargo` of [`cargo_for_target`] builds.
 pub(crate) fn target_folder(cargo: &Command) -> &'static str {
     if is_debian(cargo) { "target/debian" } else { "target" }
 }
 
-/// The most bytes that something built may have. Limits are those of the compilers that CI installs, which says so by
-/// this variable; with others it may have a twentieth more.
+/// The size limit in bytes of a build product. Limits are for the compilers that CI installs, which sets this variable;
+/// with others a twentieth more is allowed.
 pub(crate) fn most_bytes(limit: u64) -> u64 {
     most(limit, env::var_os("EERUF_EXACT_SIZES").is_some())
 }
@@ -108,19 +108,18 @@ const fn most(limit: u64, exact: bool) -> u64 {
     if exact { limit } else { limit + limit / 20 }
 }
 
-/// `eeruf`, built.
+/// Builds the program `eeruf`.
 pub(crate) fn program() -> Result<PathBuf> {
     built("eeruf")
 }
 
-/// The program of `cargo lab`, built.
+/// Builds the program of `cargo lab`.
 pub(crate) fn lab() -> Result<PathBuf> {
     built("eeruf-lab")
 }
 
-/// A binary of the workspace as it was built for the tests: with the features of all packages, since another choice
-/// would build what they stand on once more. A test is among what is built, since only then dependencies have the
-/// features that tests ask for.
+/// A binary of the workspace as built for the tests, with the features of all packages, since others would rebuild the
+/// dependencies. A test is built too, so that dependencies have the features that tests need.
 pub(crate) fn built(name: &str) -> Result<PathBuf> {
     let build = ["build", "--quiet", "--locked", "--workspace", "--test", "line", "--bin", name];
     run(Command::new("cargo").args(build))?;

@@ -71,7 +71,7 @@ impl Open {
         !self.echoes.is_empty() || self.off == WIDE
     }
 
-    /// The kind of the reading if it says nothing about an echo; a line that is held says nothing yet.
+    /// The kind of a reading without information about an echo; a held line gives none yet.
     pub(crate) fn unusable(&self, silence: Silence) -> Option<ReadingKind> {
         match self.evidence {
             Evidence::Stuck => Some(ReadingKind::Stuck),
@@ -128,7 +128,7 @@ pub(super) struct Listening {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Sensor {
     pub(crate) open: Option<Open>,
-    /// The last firing whose reading is out, and its late edge that is not.
+    /// The last firing whose reading was emitted, and its late edge that was not.
     pub(crate) emitted: Option<Open>,
     pub(crate) late: Option<u32>,
     pub(crate) had_late: bool,
@@ -212,7 +212,7 @@ impl Sensor {
         self.fired.push(at);
     }
 
-    /// Stores evidence on the open firing, if there is one.
+    /// Stores evidence about the open firing, if there is one.
     pub(crate) fn shows(&mut self, evidence: Evidence) {
         if let Some(open) = self.open.as_mut().filter(|open| open.evidence != Evidence::Stuck) {
             open.evidence = evidence;
@@ -220,7 +220,7 @@ impl Sensor {
     }
 
     /// An edge between two instants: the middle counts, unless it may be off by more than 300 us. Returns true if it
-    /// came after the window, which is open still.
+    /// came after the window, which is still open.
     pub(crate) fn edge_between(&mut self, earliest: u64, latest: u64, window: Micros, blanking: Micros) -> bool {
         let (width, [first, last]) = (latest - earliest, [blanking, window].map(|us| i64::from(us.as_micros())));
         let (middle, off) = (earliest + width / 2, width - width / 2);
@@ -241,7 +241,7 @@ impl Sensor {
         false
     }
 
-    /// An edge that may be off by this many units. Returns true if it came after the window, which is open still.
+    /// An edge that may be off by this many units. Returns true if it came after the window, which is still open.
     fn edge(&mut self, at: u64, off: u32, window: Micros, blanking: Micros) -> bool {
         let [window, blanking] = [window, blanking].map(|us| u64::from(us.as_micros()));
         if let Some(open) = &mut self.open {
@@ -271,7 +271,7 @@ impl Sensor {
         false
     }
 
-    /// Takes back what was heard, if it could be told: of a ring of several echoes that is no echo.
+    /// Takes back the last echo, if possible: a ring of several echoes then has none.
     pub(crate) fn unhear(&mut self, echoes: usize) {
         match &mut self.open {
             Some(open) if open.is_ready() && echoes == 1 => {
@@ -290,7 +290,7 @@ pub(crate) struct Lines {
     pub(crate) sensors: [Sensor; SENSORS],
     /// Counts of readings in this period.
     pub(crate) tally: Tally<u8>,
-    /// Sound that was heard need not be told before.
+    /// Time before which sound that was heard need not be reported.
     pub(crate) settled: u64,
     pub(crate) silence: Silence,
 }
@@ -378,7 +378,7 @@ impl Lines {
         true
     }
 
-    /// A sensor that there is, when it fired, and after how long a made-up echo comes.
+    /// Picks an existing sensor, with the time of its firing and a made-up echo time.
     pub(crate) fn echo_of<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize>(
         &self,
         ring: &Ring<P, J, K, E, H>,
@@ -410,8 +410,8 @@ impl Lines {
     }
 }
 
-/// Where many of the numbers that the fuzzer makes up are one that matters: close to the borders of window and
-/// blanking, or close to one another.
+/// Maps many of the fuzzer's numbers to interesting ones: close to the borders of window and blanking, or close to one
+/// another.
 fn t_echo_of(made_up: u16, [window, blanking, t_delta]: [Micros; 3]) -> u64 {
     let (which, rest) = (made_up % 4, u64::from(made_up / 4));
     let near = |border: Micros| (u64::from(border.as_micros()) + rest % 4).saturating_sub(2);
@@ -568,8 +568,8 @@ impl<'s> Model<'s> {
         self.lines.tally.count(reading.kind);
     }
 
-    /// Holds what the ring says of two readings that agree, if they do, against all firings there were: nothing
-    /// explains what is believed, and what is ambiguous is explained by whom it names.
+    /// Checks the ring's verdict on two readings that agree against all firings: nothing explains a believed reading,
+    /// and the named sensor explains an ambiguous one.
     fn explained(&self, reading: &Reading, pair: Option<(Heard, Heard)>) {
         let y = usize::from(reading.sensor);
         let explains =
@@ -590,7 +590,7 @@ impl<'s> Model<'s> {
         }
     }
 
-    /// A sensor has shown that it listened: where its line was held and its reading is out, silence counts now.
+    /// Notes that a sensor has shown that it listened: if its line was held and its reading is out, silence counts now.
     pub(super) fn answered(&mut self, x: usize) {
         let sensor = &mut self.lines.sensors[x];
         if core::mem::take(&mut sensor.is_held) {
@@ -617,7 +617,7 @@ impl<'s> Model<'s> {
         }
     }
 
-    /// The last firing, of sensor `x`, came at this time, later than its poll or not.
+    /// Notes that the last firing, of sensor `x`, came at this time.
     pub(super) fn fired_at(&mut self, x: usize, at: u64) {
         let (Some(open), Some(last)) = (&mut self.lines.sensors[x].open, &mut self.last) else { return };
         let later = at > last.at;
@@ -642,7 +642,7 @@ impl<'s> Model<'s> {
         }
     }
 
-    /// Returns true if the ring listens otherwise from now on: exactly where it can.
+    /// Notes changed listening settings; the ring must have accepted them exactly if it can.
     pub(super) fn listen(&mut self, done: bool, changed: Listening) {
         let Listening { t_delta, window, blanking, .. } = changed;
         let longest =
@@ -656,7 +656,7 @@ impl<'s> Model<'s> {
         }
     }
 
-    /// Begins with another schedule, or again with the same one.
+    /// Begins with another schedule, or restarts with the same one.
     pub(super) fn new_epoch(&mut self, schedule: &'s Schedule<SENSORS>) {
         self.before = Some(self.schedule);
         self.epoch += 1;
@@ -665,7 +665,7 @@ impl<'s> Model<'s> {
         self.invalidate();
     }
 
-    /// Everything that could be emitted has been.
+    /// Notes that every possible event was emitted.
     pub(super) fn drained(&self) {
         for (x, sensor) in self.lines.sensors.iter().enumerate() {
             assert!(sensor.late.is_none() || self.lines.now < self.lines.settled, "sensor {x} has a late edge to tell");

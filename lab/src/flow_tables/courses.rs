@@ -7,7 +7,7 @@ use eeruf_sim::{Entry, LabMate, Method};
 
 use super::{Asked, Cell, Table, flow, usual};
 
-/// Choices: what enters the map, and how long sensors listen.
+/// Choices of the ranges that enter the map, and of the listening time.
 fn candidates() -> Vec<Entry> {
     let mut entries = vec![Entry::from(Method::Flow)];
     for ms in [12, 14, 16, 18, 24] {

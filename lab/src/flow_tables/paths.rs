@@ -1,5 +1,5 @@
-//! Sound as paths alone, around core's own ring: several equally loud ones from four other sensors to each, and how far
-//! readings that fit lead a belief whose wall is gone.
+//! Sound as paths alone, around core's own ring: several equally loud paths from four other sensors to each, and the
+//! distance by which readings that fit move a belief whose wall is gone.
 
 use eeruf_core::flow::{BeliefSettings, FlowRing, InTurn, TurnSettings, Votes};
 use eeruf_core::judge::{Judge, MedianFilter};
@@ -110,7 +110,7 @@ impl Sound {
     }
 }
 
-/// Change that a good reading may make in a millisecond, in us, and the speed at which it does, in mm/s.
+/// Change of a good reading in a millisecond, in us, and the corresponding speed, in mm/s.
 const RATES: [(f64, u16); 5] = [(0.0, 0), (1.0, 170), (2.0, 340), (3.0, 500), (6.0, 1_000)];
 
 fn config() -> RingConfig {
@@ -176,7 +176,7 @@ pub(super) fn table(asked: &Asked) -> Result<Table, Box<dyn std::error::Error>> 
 /// Time when the wall disappears, in us.
 const GOES: u64 = 3_000_000;
 
-/// Distance over which readings that fit lead the belief of sensor 0 after its wall has gone, in mm, and for how long,
+/// The distance in mm by which readings that fit move the belief of sensor 0 after its wall has gone, and for how long,
 /// in ms.
 fn lead(number: u64, rate: f64, speed: u16) -> Result<Option<[f64; 2]>, RingError> {
     let random = Random::new(number);

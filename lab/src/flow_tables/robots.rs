@@ -37,7 +37,7 @@ const CONDITIONS: [Together; 9] = [
 ];
 
 impl Together {
-    /// A placing of Set III with robots of this make in their places.
+    /// Puts robots of this make in the places of a placing of Set III.
     fn place(self, robot: &Robot, placing: &Placing) -> Vec<Robot> {
         let places: Vec<Vector> = placing.robots.iter().map(|of| of.pose.translation.vector).collect();
         let with = |(k, of): (usize, &Robot)| {

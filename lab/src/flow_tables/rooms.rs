@@ -60,7 +60,7 @@ fn run(of: &Condition, robot: &Robot, kind: RoomKind, number: u64, entry: &Entry
     Ok([100.0 * found.belief.right, found.right_echoes_per_s, 100.0 * found.belief.phantom])
 }
 
-/// Ways of firing with different votes and least quiet, to show what each costs.
+/// Ways of firing with different votes and least quiet, to show the cost of each.
 fn trade(robot: &Robot) -> Vec<Entry> {
     let part = |of: f64| Some(Micros::new((f64::from(turns_of(robot, 1).most.as_micros()) / of) as u32));
     let mut entries = usual();

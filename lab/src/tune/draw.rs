@@ -3,8 +3,8 @@
 use eeruf_sim::experiments::set_two::Piloting;
 use eeruf_sim::{Random, Vfh};
 
-/// Parameters that the search may change; the rest is as published. Numbers have few digits, so that they print as they
-/// are.
+/// Parameters that the search may change; all others are as published. Numbers have few digits, so that they print
+/// exactly.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Candidate {
     pub(crate) smoothing: usize,
@@ -18,7 +18,7 @@ pub(crate) struct Candidate {
 }
 
 impl Candidate {
-    /// Returns the draw for the simulator.
+    /// Returns the parameters in the simulator's form.
     pub(crate) fn piloting(&self) -> Piloting {
         let vfh = Vfh {
             smoothing: self.smoothing,
@@ -36,7 +36,7 @@ impl Candidate {
 const SEED: u64 = 1991;
 
 /// The candidate of a number: the published pilot without and with the growth rate operator, then drawn ones. The pilot
-/// that all methods once shared is none of them, since it was found by the score of one method.
+/// that all methods once shared is excluded, since it was found by the score of one method.
 pub(crate) fn candidate(number: usize) -> Candidate {
     let published = Candidate {
         smoothing: 5,

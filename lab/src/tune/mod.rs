@@ -1,12 +1,12 @@
-//! Search for settings of the experiments' methods: a pilot for each method of Set II, and what several echoes are
-//! compared by in Set I. It goes into the source of `eeruf-sim`; with `--check` it is only compared (an hour).
+//! Search for settings of the experiments' methods: a pilot for each method of Set II, and the comparison of several
+//! echoes in Set I. It goes into the source of `eeruf-sim`; with `--check` it is only compared (an hour).
 //!
 //! ```text
 //! cargo lab tune [--check]
 //! ```
 //!
-//! What was tried is kept in `target/tune` and not tried again, also if the search was stopped; whoever changes the
-//! simulator deletes that folder first. With other physics, other constants come out.
+//! Results are kept in `target/tune` and not computed again, even after a stop; delete that folder after changing the
+//! simulator. With other physics, other constants come out.
 
 mod draw;
 mod log;
@@ -53,7 +53,7 @@ fn with_line(text: &str, line: &str) -> String {
     lines.flat_map(|line| [line, "\n"]).collect()
 }
 
-/// Writes a source, or compares it.
+/// Writes a source file, or compares it.
 fn put(path: &str, text: &str, check: bool) -> crate::Answer {
     if fs::read_to_string(path)? == text {
         println!("{path} is what was found");

@@ -15,15 +15,15 @@ pub(crate) const ROUNDS: [Round; 3] =
 /// Score of a pilot on a round's courses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Score {
-    /// Number of courses it finished alone, with a second robot behind, and with one ahead.
+    /// Number of courses that it finished alone, with a second robot behind, and with one ahead.
     pub(crate) finished: [u32; 3],
     /// Time for which it drove on those that it finished, in seconds.
     pub(crate) time_s: f64,
 }
 
 impl Score {
-    /// A finished course counts 1, and four seconds longer on it as much as a fortieth of one. All three places count
-    /// alike, as each has as many courses.
+    /// Computes the score: a finished course counts 1, and four more seconds on it cost a fortieth of that. All three
+    /// places count alike, as each has as many courses.
     pub(crate) fn value(&self) -> f64 {
         f64::from(self.finished.iter().sum::<u32>()) - self.time_s / 160.0
     }

@@ -1,4 +1,4 @@
-//! The search is successive halving: many pilots drive a few courses, the best of them more, and the best of those the
+//! A search by successive halving: many pilots drive a few courses, the best of them more, and the best of those the
 //! most (K. Jamieson and A. Talwalkar, "Non-stochastic best arm identification and hyperparameter optimization",
 //! AISTATS 2016).
 
@@ -29,7 +29,7 @@ pub(crate) struct Search<'a> {
 }
 
 impl Search<'_> {
-    /// Returns the pilot that is best in the last round; the first of equals.
+    /// Returns the best pilot of the last round; the first of equals.
     pub(crate) fn run(&self, log: &mut Log) -> Result<Tuned, Trouble> {
         let mut left: Vec<usize> = (0..self.rounds.first().map_or(0, |round| round.pilots)).collect();
         let mut best = None;

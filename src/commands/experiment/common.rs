@@ -118,7 +118,7 @@ pub(crate) fn watched(what: String) -> impl Fn(f64) -> bool + Sync {
     }
 }
 
-/// A function called now and then with the share that is done, 0 to 1.
+/// A function called occasionally with the finished share, 0 to 1.
 pub(crate) type Watched<'a> = &'a (dyn Fn(f64) -> bool + Sync);
 
 /// The number of seeds done, and for each method its runs.

@@ -81,7 +81,7 @@ impl Corner {
 }
 
 const SEEDS: u64 = 100;
-/// Wide enough for a robot at 1 m/s: 2 v dt / c is at most 0.434 ms.
+/// `T_delta` that suffices for a robot at 1 m/s: 2 v dt / c is at most 0.434 ms.
 const PAPERS_T_DELTA: Micros = Micros::new(500);
 /// The top speeds of a sweep, in m/s.
 const SPEEDS: [f64; 7] = [0.5, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0];

@@ -78,7 +78,7 @@ impl Part {
     }
 }
 
-/// The runs of these methods, of which each has `seeds`; they were read from `file` and others.
+/// The runs of these methods, each with `seeds` of them, as read from `file` and others.
 pub(super) fn runs_of<R: DeserializeOwned>(
     methods: &[Entry],
     seeds: u64,

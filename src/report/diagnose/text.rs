@@ -7,9 +7,9 @@ use eeruf_logs::{FoundPath, Share};
 use super::DiagnosisReport;
 use crate::report::table::markdown;
 
-/// Largest number of paths printed for a robot that drives, each of them a second's.
+/// Largest number of paths printed for a driving robot, each of which lasts about a second.
 const MOST_LINES: usize = 30;
-/// Clocks that differ by more are reported.
+/// Difference of clocks above which it is reported.
 const APART_PPM: f64 = 10.0;
 
 /// Writes the whole diagnosis.

@@ -11,7 +11,7 @@ const LEFT: f64 = 140.0;
 const WIDTH: f64 = 900.0;
 const TOP: f64 = 104.0;
 const LANE: f64 = 28.0;
-/// Room at the right of each column for the number at the end of its longest bar.
+/// Room at the right of each column for the number at its longest bar.
 const ROOM: f64 = 50.0;
 
 /// A figure: its name, unit and colour, and the function that takes it from a summary.
@@ -67,7 +67,7 @@ pub(crate) fn methods_chart(title: &str, summaries: &[Summary]) -> Picture {
     picture
 }
 
-/// A sensor that is right in under this share of its firings is blind.
+/// Share of right firings below which a sensor is blind.
 const BLIND: f64 = 0.05;
 
 /// One line for each method, one cell for each sensor: the share of its firings that are right, and which are blind.

@@ -33,7 +33,7 @@ const TOP: f64 = 64.0;
 const BEAM_M: f64 = 0.22;
 const HALF_BEAM_RAD: f64 = 0.15;
 
-/// One panel beside the other, all to the same scale, with the same widths for the same number of wrong readings.
+/// Draws the panels beside each other, to one scale, with equal widths for equal numbers of wrong readings.
 pub(crate) fn scene_with_paths(world: &World, panels: &[Panel]) -> Picture {
     let count = panels.len().max(1) as f64;
     let panel_width = (WIDTH - 2.0 * MARGIN - (count - 1.0) * GAP) / count;

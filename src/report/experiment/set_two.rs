@@ -11,7 +11,7 @@ use crate::report::json::in_order;
 use crate::report::percent::percent;
 use crate::report::table::markdown;
 
-/// A method sustains a speed if it finishes this share of the courses.
+/// Share of the courses that a method must finish to sustain a speed.
 const SUSTAINED: f64 = 0.95;
 
 const FILTERS: &str = "multi_echo compares 3 readings, the other filters 2";
@@ -99,7 +99,7 @@ pub(crate) struct Sweep {
     seeds: u64,
     second_robot_m: Option<[f64; 2]>,
     steps: Vec<SpeedStep>,
-    /// Returns the highest speed at which nearly all courses are finished.
+    /// The highest speed at which nearly all courses are finished.
     #[serde(serialize_with = "in_order")]
     borne_m_s: Vec<(String, Option<f64>)>,
 }

@@ -11,7 +11,7 @@ use crate::report::bounces::by_way_of;
 
 /// The most rows that are printed.
 const ROWS: usize = 8;
-/// The methods compared when there are more than columns: no filter, the filter without alternation, and with it.
+/// The methods compared if there are more than columns: without a filter, with a filter, and with alternation too.
 const COMPARED: [Method; 4] = [Method::Conventional, Method::Comparison, Method::Eeruf, Method::EerufBest];
 
 /// Key of a path in all runs: receiver, sender and bounces.

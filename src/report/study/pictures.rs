@@ -101,8 +101,8 @@ fn corners(world: &World, readings: &Readings, index: u32, path: &HeardPath) -> 
     world.scene().bounce_points(position(path.emitter, sent_s)?, position(path.receiver, heard_s)?, &path.bounces)
 }
 
-/// The robot and sensor that were fooled most and farthest under one method, and have readings accepted under the
-/// other: of a sensor that accepts nothing there is little to see.
+/// The robot and the sensor that one method fooled most and farthest; the other method must have accepted some of that
+/// sensor's readings, or there is little to see.
 fn most_helped(before: &Readings, after: &Readings) -> (usize, u8) {
     let mut scores = BTreeMap::new();
     for reading in (0..before.len()).filter(|&reading| before.is_accepted(reading)) {

@@ -6,7 +6,7 @@ use super::SurveyReport;
 use crate::files::survey::TruePath;
 use crate::report::table::markdown;
 
-/// A path is the same if it is not further off than this, in microseconds: a faint echo is heard up to a burst late.
+/// Tolerance for the length of one path, in microseconds: a faint echo is heard up to a burst late.
 const SAME_US: f64 = 400.0;
 
 /// Accuracy of a survey.
@@ -18,10 +18,10 @@ pub(crate) struct Compared {
     /// Number of pairs with a path 6 dB or more above the threshold of hearing.
     pub(crate) loud_pairs: usize,
     pub(crate) loud_pairs_found: usize,
-    /// Number of pairs that wrongly count as hearing each other: they do not at any time, even 6 dB louder.
+    /// Number of pairs wrongly reported as hearing each other: they do not, even 6 dB louder.
     pub(crate) pairs_wrong: usize,
-    /// Paths between different sensors that the survey found, and how many of them no sound takes that
-    /// would be heard 6 dB louder.
+    /// Number of paths between different sensors that the survey found, and of those that no sound takes, even 6 dB
+    /// louder.
     pub(crate) paths: usize,
     pub(crate) paths_wrong: usize,
 }

@@ -28,7 +28,7 @@ pub(super) enum Board {
 }
 
 impl Board {
-    /// The name of the controller, of the folder with the board's pins, and what the core calls it.
+    /// The names of the controller, of the folder with the board's pins, and of the board in the core.
     const fn names(self) -> [&'static str; 3] {
         match self {
             Self::Uno => ["-mmcu=atmega328p", "standard", "-DARDUINO_AVR_UNO"],
@@ -102,7 +102,7 @@ pub(super) fn example(library: &Path, name: &str) -> Result<Sketch> {
     ours(library, Board::Uno, name, &text, &[])
 }
 
-/// Builds a sketch of our own, with the packed library and all warnings.
+/// Builds a sketch from this text, with the packed library and all warnings.
 pub(super) fn ours(library: &Path, board: Board, name: &str, text: &str, defines: &[&str]) -> Result<Sketch> {
     sketch(&library.join("src"), board, name, text, &[&["-Wall", "-Wextra", "-Werror"], defines].concat())
 }

@@ -17,7 +17,7 @@ use crate::steps::edited;
 
 /// Echo time of a wall, in microseconds.
 const EQUAL_US: u32 = 12_000;
-/// Faults of one module's line: as `world.c` names them, and as the file does.
+/// Faults of one module's line, by their names in `world.c` and in the file.
 const FAULTS: [(&str, &str); 9] = [
     ("cut:3", "no power"),
     ("deaf:3", "cut wire"),
@@ -29,7 +29,7 @@ const FAULTS: [(&str, &str); 9] = [
     ("hold-130:3", "hold of 130 ms"),
     ("hold-200:3", "hold of 200 ms"),
 ];
-/// The faults of a sketch to which each line's interrupt hands in the level that it sees, by the table of the file.
+/// The faults of a sketch whose interrupts hand in the level that they see, by the table of the file.
 const EDGE_FAULTS: [(&str, &str, &[&str]); 6] = [
     ("hold-38:2", "healthy", &PLACES),
     ("lost-rise:2", "lost rising edge", &PLACES),
@@ -45,15 +45,15 @@ const EDGE_PINS: [u8; 8] = [4, 5, 6, 7, 8, 2, 14, 3];
 /// Echo times of the file's walls, in microseconds: those of the healthy sensors, and the near one.
 const WALL_US: u32 = 5_830;
 const NEAR_US: u32 = 500;
-/// Distance of the walls, and how far a sketch may be off it.
+/// Distance of the walls, and the tolerance of a sketch.
 const WALL_MM: u32 = 1000;
 const OFF_MM: u32 = 10;
 /// Surroundings of the module, as the file names them.
 const PLACES: [&str; 2] = ["wall", "nothing"];
-/// The faults of all languages, and the table of the outcomes, of which one column is compared.
+/// The file with the faults of all languages, and the table of outcomes, one column of which is compared.
 const FILE: &str = "tests/data/line-faults.txt";
 const OUTCOMES: &str = "tests/data/line-fault-outcomes.txt";
-/// Readings that a line may take to show what it is: twice the time that a clone holds it, in periods.
+/// Number of readings within which a line must show its state: twice the time for which a clone holds it, in periods.
 const UNTIL_STUCK: usize = 8;
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,7 +91,7 @@ fn words_of(said: &str, module: usize) -> Vec<&str> {
     said.lines().filter_map(|line| line.trim().strip_prefix(&prefix)).collect()
 }
 
-/// The number of distances, clear, no answer, unsure, as [`Says`] has them.
+/// The numbers of readings in the order of [`Says`]: distances, clear, no answer, unsure.
 fn counts(words: &[&str]) -> [usize; 4] {
     let mut counts = [0; 4];
     for words in words {
@@ -124,11 +124,11 @@ fn with_fault(
     world::before_walls(world, elf, &["--fault", fault], seconds, walls, pins).with_context(|| fault.to_owned())
 }
 
-/// A fault, its surroundings, and its readings: those that are right, all, and those without evidence.
+/// A fault, its surroundings, and its numbers of readings: right ones, all, and those without evidence.
 type Outcome = (&'static str, &'static str, [usize; 3]);
 
-/// The document whose table has these cells in the column, by fault and surroundings; rows of a fault that it has once
-/// take the sum.
+/// Returns the document with these cells in the column, by fault and surroundings; a row for several of them takes the
+/// sum.
 fn with_column(document: &str, said: &[Outcome]) -> Result<String> {
     let head = document.lines().find(|line| line.starts_with("| fault")).map(cells).unwrap_or_default();
     let column =
@@ -152,7 +152,7 @@ fn with_column(document: &str, said: &[Outcome]) -> Result<String> {
     Ok(text)
 }
 
-/// Checks the words of sketches about a faulty module. The table has what is said; `EERUF_WRITE` writes it.
+/// Checks the output of sketches with a faulty module against the table; `EERUF_WRITE` writes the table.
 pub(super) fn run(library: &Path) -> Result<()> {
     let world = &world::build()?;
     let file = fs::read_to_string(FILE)?;
@@ -169,7 +169,7 @@ pub(super) fn run(library: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Ring8 with a faulty module before a wall and before nothing; its others read their walls.
+/// Runs Ring8 with a faulty module before a wall and before nothing; the others must read their walls.
 fn faults_of_ring8(library: &Path, world: &Path, file: &str) -> Result<Vec<Outcome>> {
     const FAULTY: usize = 3;
     let sketch = build::example(library, "Ring8")?;
@@ -197,7 +197,8 @@ fn faults_of_ring8(library: &Path, world: &Path, file: &str) -> Result<Vec<Outco
     Ok(outcomes)
 }
 
-/// The sketch of `c/arduino/world` with the faults that interrupts by level can have; its readings after the second.
+/// Runs the sketch of `c/arduino/world` with the faults that interrupts by level can have; returns its readings after
+/// the second.
 fn faults_of_edges(library: &Path, world: &Path, file: &str) -> Result<Vec<Outcome>> {
     const FAULTY: usize = 2;
     let text = fs::read_to_string(EDGE_SKETCH)?;
@@ -260,7 +261,7 @@ fn latched_line_recovers(library: &Path, world: &Path) -> Result<()> {
 }
 
 /// Checks States4 with a flow ring in place of its table: a module before nothing is clear, one without power does not
-/// answer, and the others keep saying their walls.
+/// answer, and the others keep reporting their walls.
 fn flow_says_states(library: &Path, world: &Path) -> Result<()> {
     const SHOWN: usize = 3;
     let name = "examples/States4/States4.ino";

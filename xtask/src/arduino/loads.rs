@@ -31,7 +31,7 @@ const SECONDS: u32 = 3;
 /// Numbers of the loads that run in CI, with six modules in the alcove.
 const CORNER: [usize; 3] = [1, 11, 18];
 
-/// A sketch that starves says so within as many milliseconds.
+/// Longest time in milliseconds until a starving sketch reports that it is too slow.
 const SAYS_SO_MS: u32 = 2_000;
 
 /// Work of this many microseconds, begun this long after the previous start; in every turn of `loop()` if that is 0.
@@ -40,14 +40,15 @@ pub(super) struct Load {
     pub(super) work_us: u32,
     pub(super) every_us: u32,
     baud: u32,
-    /// Interrupts are masked meanwhile; or it waits for `quietFor()` too.
+    /// True if the work masks interrupts; otherwise it may wait for `quietFor()` too.
     pub(super) masks: bool,
     waits: bool,
-    /// Least right readings a second of six polled modules in the alcove: a table's, with edges stamped as seen.
+    /// Least number of right readings a second of six polled modules in the alcove, for a table with edges stamped as
+    /// seen.
     least: f64,
-    /// Wrong readings a second that may be: polled, and by interrupt.
+    /// Largest number of wrong readings a second: polled, and by interrupt.
     most: [f64; 2],
-    /// The least share of firings, in percent, that are accepted by interrupt before walls of their own.
+    /// The least share of accepted firings by interrupt, in percent, before walls of their own.
     accepted: f64,
 }
 
@@ -92,7 +93,7 @@ pub(super) fn up_to(state: &mut u64, most: u32) -> u32 {
     ((*state >> 33) % u64::from(most)) as u32
 }
 
-/// The sketch's lines that do the work, for others: its variables and its function.
+/// The sketch's lines for other work, for use elsewhere: its variables and its function.
 pub(super) fn work() -> Option<(&'static str, &'static str)> {
     let (variables, rest) = SKETCH.split_once("struct {")?.1.split_once("void setup")?;
     Some((variables, rest.split_once("void doWork")?.1.split_once("void loop")?.0))
@@ -163,7 +164,7 @@ struct Place {
 }
 
 /// The alcove; walls of their own from 0.4 to 3.4 m, by the golden section so that no two are alike; and the alcove 1.6
-/// times as large, where sound of one module is still heard when others have waited for 10 ms: for eight modules.
+/// times as large, where a module's sound is still heard after 10 ms, for eight modules.
 fn places() -> Result<[Place; 3]> {
     let alcove = fs::read_to_string(world::KEPT)?;
     let own = (0..8).map(|module| format!("{module} {module} {}\n", 2_300 + module * 618 % 1000 * 175 / 10)).collect();

@@ -1,4 +1,4 @@
-//! The pace of a sketch: the longest time of one `read()`, which each states.
+//! The pace of a sketch: the longest time of one `read()`, which each sketch states.
 
 use std::path::Path;
 
@@ -14,7 +14,7 @@ const SKETCHES: [&str; 5] = ["Ring8", "States4", "FromNewPing", "Flow12", "Strip
 const SECONDS: u32 = 3;
 /// Words in each sketch before `X ms`.
 const STATED: &str = "One read() takes up to ";
-/// Times each call, and says a time that is longer than all before.
+/// A function that times each call, and prints a time longer than all before.
 const TIMED: &str = "bool timed() {
   const uint32_t began = micros();
   const bool is_reading = sonar.read();
@@ -53,7 +53,7 @@ pub(super) fn run(library: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Returns the output of a sketch among modules that are each before a wall of their own.
+/// Returns the output of a sketch whose modules each stand before a wall of their own.
 fn heard(library: &Path, world: &Path, example: &Example, name: &str, text: &str) -> Result<String> {
     let sketch = build::ours(library, Board::Uno, name, text, &[])?;
     let walls: Vec<_> = (0..example.modules() as u32).map(|module| Some(6_000 + 1_300 * module)).collect();

@@ -1,6 +1,6 @@
-//! `cargo xtask programs`: what `eeruf design --program` writes, built as whoever asked for it would, and run to what
-//! it accepts: on modules that are each before a wall of their own, and sketches also in an alcove where modules hear
-//! each other. With `--combinations` it draws way, language, number of modules, and what else the loop does.
+//! `cargo xtask programs`: builds what `eeruf design --program` writes as a user would, and runs it: on modules that
+//! each stand before a wall of their own, and sketches also in an alcove where modules hear each other.
+//! `--combinations` draws way, language, number of modules, and other work of the loop.
 
 use std::path::Path;
 use std::process::Command;
@@ -29,7 +29,7 @@ pub(crate) struct Drawn {
     seed: u64,
 }
 
-/// A program that is asked for: ring file or number of modules, options, and what else its loop does.
+/// A requested program: ring file or number of modules, options, and the other work of its loop.
 struct Asked {
     ring: String,
     options: String,
@@ -37,7 +37,7 @@ struct Asked {
 }
 
 const CAR: &str = "tests/data/car-4.toml";
-/// A ring whose file names no module, and which listens for no longer than to its ranges.
+/// A ring whose file names no module, and which listens only as far as its ranges.
 const CAR_12: &str = "rings/car-12.toml";
 const MAVLINK: &str = "arduino --mavlink";
 /// Programs for the car alone.
@@ -61,8 +61,8 @@ const COUNTED: &str = "  if (!sonar.read()) return;
   if (Serial.availableForWrite() < 14) return;
 ";
 
-/// Shares in percent: firings accepted, of all and of the worst module; wrong ones of those accepted, before walls and
-/// in the alcove. And whether the program says that it is too slow.
+/// Shares in percent: accepted firings, of all and of the worst module; wrong ones among the accepted, before walls and
+/// in the alcove. Also true if the program reports that it is too slow.
 #[derive(Default)]
 struct Figures {
     accepted: f64,
@@ -122,7 +122,7 @@ pub(crate) fn programs(drawn: &Drawn, short: bool) -> Result<()> {
 }
 
 impl Asked {
-    /// One that there can be.
+    /// Draws a valid combination.
     fn drawn(state: &mut u64) -> Self {
         loop {
             let mut up_to = |most: usize| loads::up_to(state, most as u32) as usize;
@@ -151,7 +151,7 @@ impl Asked {
         }
     }
 
-    /// The columns of its figures, if they are enough.
+    /// Runs a program, and returns the columns of its figures, if they are good enough.
     fn row(&self, out: &Path, short: bool, [program, world]: [&Path; 2]) -> Result<String> {
         let seconds = if short { 3 } else { 5 };
         let mut text = match self.ring.parse::<usize>() {
@@ -197,8 +197,8 @@ impl Asked {
         Ok(row)
     }
 
-    /// The work of its loop, after how much time again, and by how much walls are apart, in microseconds: a fast robot,
-    /// or one whose file says ranges, does not listen for long.
+    /// The work of the loop, its interval, and the distance between walls in microseconds: a fast robot, or one whose
+    /// file gives ranges, listens only briefly.
     fn work(&self) -> [String; 3] {
         let [work, every] = self.load.map_or([0; 2], |load| [load.work_us, load.every_us]);
         [work, every, if self.ring.parse::<u8>().is_ok() { 20 } else { 9 }].map(|us| us.to_string())
@@ -295,7 +295,7 @@ fn built(folder: &Path, board: Board, text: &str) -> Result<(std::path::PathBuf,
     Ok((elf, pins.concat()))
 }
 
-/// The rate of `OBSTACLE_DISTANCE` of a car's sketch, whose last must show the wall of each module.
+/// The rate of `OBSTACLE_DISTANCE` messages of a car's sketch, the last of which must show the wall of each module.
 fn obstacles(world: &Path, folder: &Path, seconds: u32) -> Result<String> {
     let (elf, pins) = built(folder, Board::Uno, &sketch_in(folder)?)?;
     // Ahead, left, right, behind, at 1 to 4 m: the sector that looks there, of 5 degrees clockwise from -20 on.
@@ -313,7 +313,7 @@ fn obstacles(world: &Path, folder: &Path, seconds: u32) -> Result<String> {
     Ok(format!("{rate} OBSTACLE_DISTANCE a second | - | - | -"))
 }
 
-/// The distances of an `OBSTACLE_DISTANCE` that these bytes begin with, if it is whole.
+/// The distances of an `OBSTACLE_DISTANCE` message at the start of these bytes, if it is whole.
 fn sectors_in(bytes: &[u8]) -> Option<Vec<u16>> {
     let [0xFD, length, ..] = *bytes else { return None };
     let frame = bytes.get(1..12 + usize::from(length))?;
@@ -347,7 +347,7 @@ fn c(folder: &Path) -> Result<Command> {
     Ok(Command::new(program))
 }
 
-/// A crate on an emulated Cortex-M0, with the crates of this checkout for those of the repository that it names.
+/// Builds a crate for an emulated Cortex-M0, with this checkout's crates in place of the repository that it names.
 fn rust(folder: &Path, [work, every, span]: &[String; 3]) -> Result<Command> {
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
     let (root, manifest) = (std::env::current_dir()?, folder.join("Cargo.toml"));

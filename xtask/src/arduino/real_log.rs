@@ -1,5 +1,5 @@
-//! The sketch that logs a real ring: its log, read by `eeruf logs` as a ring's own, is as the simulator has it in the
-//! same room.
+//! Checks the sketch that logs a real ring: `eeruf logs` reads its log as a ring's own, and it agrees with the
+//! simulator in the same room.
 
 use std::path::Path;
 use std::process::Command;

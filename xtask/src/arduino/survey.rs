@@ -1,4 +1,4 @@
-//! The sketch that surveys a ring: what `eeruf survey` makes of its log, held against the ways that sound takes in the
+//! Checks the sketch that surveys a ring: compares the findings of `eeruf survey` with the paths of sound in the
 //! simulated world.
 
 use std::path::Path;
@@ -15,13 +15,12 @@ const MODULES: usize = 4;
 const PINS: [u8; 2 * MODULES] = [2, 3, 4, 5, 2, 3, 4, 5];
 /// Time that the sketch may take; it ends after 28 s.
 const SECONDS: u32 = 29;
-/// Modules that hear each other within this time, in microseconds, must be found; what takes longer is seen at few
-/// leads.
+/// Travel time in microseconds below which pairs must be found; longer paths are seen at few leads.
 const UNTIL_US: f64 = 15_000.0;
-/// The sketch looks at its lines every few microseconds.
+/// Tolerance in microseconds: the sketch looks at its lines every few microseconds.
 const OFF_US: f64 = 30.0;
 
-/// Runs it, and gives the columns of the table that are left.
+/// Runs the sketch, and returns the remaining columns of the table.
 pub(super) fn run(world: &Path, elf: &Path) -> Result<String> {
     let ways = Path::new(super::world::KEPT);
     let said = super::world::command(world, &[], elf, SECONDS, ways, &PINS).output()?;

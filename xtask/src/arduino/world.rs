@@ -16,7 +16,7 @@ use crate::steps::{need, output, run, skip};
 pub(super) const SCENE: &str = "scenes/alcove-hc-sr04.toml";
 /// The paths as a file, for users without Rust.
 pub(super) const KEPT: &str = "c/arduino/world/alcove.txt";
-/// A reading is wrong if it is off by more: 0.3 ms of echo time.
+/// Error in mm above which a reading is wrong: 0.3 ms of echo time.
 const OFF_MM: u32 = 50;
 
 /// Figures of a run.
@@ -40,9 +40,9 @@ pub(super) struct Heard {
     by_cause: [u32; 3],
 }
 
-/// Readings a second that a sketch with other work accepts: right, wrong, and own ones of a later echo, as it came; the
-/// share of firings that are accepted, and the right ones of the worst module; modules that have fewer than one in two
-/// seconds, and when it first said that it is too slow, in milliseconds.
+/// Readings a second that a sketch with other work accepts: right ones, wrong ones, and own later echoes measured as
+/// they came; the share of accepted firings, and the right readings of the worst module; the modules with fewer than
+/// one in two seconds, and the time in milliseconds of the first report that it is too slow.
 pub(super) struct UnderLoad {
     pub(super) right: f64,
     pub(super) wrong: f64,
@@ -72,8 +72,8 @@ pub(super) fn build() -> Result<PathBuf> {
     Ok(world)
 }
 
-/// Paths of sound among the scene's eight modules, or among more of them all around: a file, and the distance that each
-/// module should measure.
+/// Writes the paths of sound among the scene's eight modules, or among more of them all around, to a file; also returns
+/// the distance that each module should measure.
 fn echo_times(modules: usize) -> Result<(PathBuf, BTreeMap<usize, u32>)> {
     let sensors = (modules > 8).then(|| modules.to_string());
     let times = output(Command::new(crate::toolchain::lab()?).args(["echo-times", SCENE]).args(&sensors))? + "\n";
@@ -102,8 +102,8 @@ pub(super) fn own_walls(times: &str) -> BTreeMap<usize, u32> {
     own_mm
 }
 
-/// The command that runs a sketch for some seconds of its own time among modules, between which sound takes the ways of
-/// a file, on these pins: triggers, then echoes.
+/// The command that runs a sketch for some seconds of its own time among modules on these pins (triggers, then echoes),
+/// with the paths of sound in a file.
 pub(super) fn command(world: &Path, options: &[&str], elf: &Path, seconds: u32, ways: &Path, pins: &[u8]) -> Command {
     let mut command = Command::new(world);
     command.args(options).arg(elf).arg(seconds.to_string()).arg(ways).arg((pins.len() / 2).to_string());
@@ -111,7 +111,7 @@ pub(super) fn command(world: &Path, options: &[&str], elf: &Path, seconds: u32, 
     command
 }
 
-/// The words of a sketch among modules that are each before a wall of its own at this echo time, or before nothing.
+/// The output of a sketch whose modules each stand before a wall at this echo time, or before nothing.
 pub(super) fn before_walls(
     world: &Path,
     elf: &Path,
@@ -126,8 +126,8 @@ pub(super) fn before_walls(
     output(&mut command(world, options, elf, seconds, &ways, pins))
 }
 
-/// Runs a sketch for some seconds of its own time. With `causes` the world says what ended each pulse, which it cannot
-/// among a sketch's frames.
+/// Runs a sketch for some seconds of its own time. With `causes` the world prints what ended each pulse, but not for a
+/// sketch that sends frames.
 pub(super) fn hear(world: &Path, elf: &Path, example: &Example, seconds: u32, causes: bool) -> Result<Heard> {
     let (times, own_mm) = echo_times(example.modules())?;
     let options: &[&str] = if causes { &["--pulses"] } else { &[] };
@@ -135,7 +135,7 @@ pub(super) fn hear(world: &Path, elf: &Path, example: &Example, seconds: u32, ca
         .with_context(|| example.name)
 }
 
-/// Hears by a command of [`command`], where each module should measure these distances.
+/// Runs a sketch by a command of [`command`], where each module should measure these distances.
 pub(super) fn hear_by(command: &mut Command, seconds: u32, own_mm: &BTreeMap<usize, u32>) -> Result<Heard> {
     let ran = command.output()?;
     ensure!(ran.status.success(), "the simulated world: {}", ran.status);
@@ -146,7 +146,7 @@ pub(super) fn hear_by(command: &mut Command, seconds: u32, own_mm: &BTreeMap<usi
 }
 
 impl Heard {
-    /// The figures in the words of a sketch and of the world, with the distance that each module should measure.
+    /// The figures in the output of a sketch and of the world, with the distance that each module should measure.
     pub(super) fn of(said: &str, own_mm: &BTreeMap<usize, u32>) -> Self {
         let mut heard = Self::default();
         // The cause that ended each module's last pulse, and its width as a distance; a sketch says its reading before
@@ -192,7 +192,7 @@ impl Heard {
         (share(self.accepted, compared.sum()), worst)
     }
 
-    /// A reading of a module, from 0, and what ended its pulse, if that is known, with its width as a distance.
+    /// Counts a reading of a module, from 0: its width as a distance, and the cause of its end, if known.
     fn accept(&mut self, own_mm: &BTreeMap<usize, u32>, module: usize, mm: u32, cause: Option<(usize, u32)>) {
         self.accepted += 1;
         *self.by_module.entry(module).or_default() += 1;
@@ -226,8 +226,8 @@ impl Heard {
         }
     }
 
-    /// Frames of a sketch, none of which may be damaged or missing; other sketches send none. The simulator says before
-    /// that what it has loaded.
+    /// Reads the frames of a sketch, none of which may be damaged or missing; other sketches send none. The simulator's
+    /// own output comes before them.
     fn frames(&mut self, mut line: &[u8], own_mm: &BTreeMap<usize, u32>) -> Result<(), String> {
         while line.starts_with(b"Loaded ") {
             line = line.iter().position(|&byte| byte == b'\n').map_or(&[], |end| &line[end + 1..]);

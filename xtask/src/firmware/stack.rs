@@ -1,5 +1,5 @@
-//! The worst stack of each public function of a ring, over all calls it can lead to: the compiler writes the size of
-//! each frame, the disassembly says who calls whom.
+//! The worst stack of each public function of a ring, over all its calls: the compiler gives the size of each frame,
+//! the disassembly the calls.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -93,7 +93,7 @@ impl Program {
         Self { frames, calls, all_known }
     }
 
-    /// Follows the calls, a tree since core has no recursion; a path deeper than any possible one would be recursion.
+    /// Follows the calls, which form a tree since core has no recursion; a path that is too deep means recursion.
     fn worst(&self, name: &str, depth: u32) -> Result<u64, String> {
         if depth > 64 {
             return Err(format!("{name} calls itself"));

@@ -9,7 +9,8 @@ use crate::toolchain::{DEBIAN_RUSTC, is_debian, most_bytes, version_of};
 /// Budgets of a ring of twelve on the Cortex-M0: name in the measured lines, most instructions.
 const INSTRUCTIONS: [(&str, u32); 6] =
     [("idle_poll", 41), ("fire", 98), ("echo", 69), ("stamp", 60), ("reading", 467), ("reading_late", 2269)];
-/// Budgets of a flow ring. `mean_reading` is of all readings of the measured world, six in ten of them not believed.
+/// Budgets of a flow ring. `mean_reading` covers all readings of the measured world, six in ten of which are not
+/// believed.
 const FLOW_INSTRUCTIONS: [(&str, u32); 3] = [("fire", 309), ("reading_moving", 2166), ("mean_reading", 868)];
 /// Programs of a flow ring of twelve: instructions and size.
 const FLOW: [&str; 2] = ["flow-instructions", "size-flow-12"];
@@ -132,7 +133,8 @@ fn of_calls(board: &Board, said: &str) -> Result<String> {
     Ok(text)
 }
 
-/// Calls that take more instructions than their budgets, by the lines `name fewest most`. Each must be among them.
+/// Returns the calls that take more instructions than their budgets, from the lines `name fewest most`; each budgeted
+/// call must occur.
 fn exceeded(said: &str, budgets: &[(&str, u32)]) -> Result<Vec<String>> {
     let mut over = Vec::new();
     for (name, budget) in budgets {

@@ -34,7 +34,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#define EERUF_VERSION 5u /* goes up with each change of a structure or a table */
+#define EERUF_VERSION 5u /* raised with each change of a structure or a table */
 
 /* Firings that a ring by a table remembers of each sensor, 4 bytes each: 2 to 32, the same for library and program.
    Four suffice where sound is audible for no longer than a period; readings that sound of a forgotten firing might
@@ -162,7 +162,7 @@ typedef struct EerufSchedule {
     const EerufLimits *limits; /* one for each sensor if they differ; else null */
 } EerufSchedule;
 
-/* Checks every number of a schedule in flash, and that it meets what it says it was verified for: (13a), (13b), the
+/* Checks every number of a schedule in flash, and that it meets the requirements that it names: (13a), (13b), the
    interval (not for EERUF_LAYOUT_OTHER) and the window. Tables that `eeruf` writes do. */
 EerufStatus eeruf_schedule_check(const EerufSchedule *schedule);
 
@@ -284,8 +284,8 @@ EerufStatus eeruf_ring_init_unverified(EerufRing *ring, size_t ring_size, EerufS
    edges you know of before. A late poll loses nothing: what is due is postponed, and all that follows with it. Where
    that shifts crosstalk so that it could explain a reading, the reading is ambiguous. */
 EerufStatus eeruf_ring_poll(EerufRing *ring, uint32_t now_us, EerufEvent *event);
-/* As eeruf_ring_poll for a robot that moves: what a good reading of each sensor should have changed by since its firing
-   before, one number for each sensor, or null. Where it is not 0 the ring asks what explains a reading on time too. */
+/* Like eeruf_ring_poll, for a robot that moves: for each sensor the change that a good reading should show since the
+   sensor's previous firing; or null. Where it is not 0, readings on time are checked for explanations too. */
 EerufStatus eeruf_ring_poll_expecting(EerufRing *ring, uint32_t now_us, const int32_t *change_us, EerufEvent *event);
 /* When to poll next; 0 for a ring that is not initialised. */
 uint32_t eeruf_ring_deadline(const EerufRing *ring);
@@ -587,17 +587,17 @@ typedef struct EerufFlowRing {
     uint8_t memory, hold, stride, turn, flags;
 } EerufFlowRing;
 
-/* Makes a flow ring that begins at `now_us`; `sensors` has a place for each sensor of the config. Hand in echoes, late
-   firings, measured times and stuck lines with the functions of its `ring`. Polling, enabling, pause and restart have
-   functions of their own, and what a table says cannot be changed: EERUF_ERR_FLOW. */
+/* Makes a flow ring that begins at `now_us`; `sensors` has a place for each sensor of the config. Hand in echoes,
+   late firings, measured times and stuck lines with the functions of its `ring`. Polling, enabling, pause and
+   restart have functions of their own, and settings of a table cannot be changed: EERUF_ERR_FLOW. */
 EerufStatus eeruf_flow_init(EerufFlowRing *flow, size_t flow_size, EerufFlowSensor *sensors, size_t sensors_size,
                             const EerufFlowConfig *config, uint32_t now_us);
 /* Begins a ring of sensors that are all alike, without `config->own`: links less. */
 EerufStatus eeruf_flow_init_alike(EerufFlowRing *flow, size_t flow_size, EerufFlowSensor *sensors, size_t sensors_size,
                                   const EerufFlowConfig *config, uint32_t now_us);
 EerufStatus eeruf_flow_poll(EerufFlowRing *flow, uint32_t now_us, EerufEvent *event); /* a period is a round */
-/* Says how fast the robot moves and turns, both without a sign, once a control cycle: readings may change by as much. After
-   half a second without a word the top speed holds. */
+/* Says how fast the robot moves and turns, both without a sign, once a control cycle: readings may change by as
+   much. After half a second without a call the top speed is assumed. */
 EerufStatus eeruf_flow_moving(EerufFlowRing *flow, uint32_t speed_mm_s, uint32_t turn_mrad_s, uint32_t now_us);
 /* Work like the functions of a ring. */
 EerufStatus eeruf_flow_enable(EerufFlowRing *flow, uint8_t sensor, bool enabled);

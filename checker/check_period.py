@@ -96,7 +96,7 @@ class Problem:
                     require(min(waits) >= gap, f"sensor {y} fires too soon after sensor {x}")
 
 class Counting:
-    """The line that counting says of periods below the bound, of which T is the longest: docs/reference/certificate.md."""
+    """A line of a certificate that refutes by counting all periods below the bound, the longest of which is T."""
     def __init__(self, lines, problem):
         self.problem, self.T, self.lines, G = problem, problem.bound - 1, lines, problem.G
         self.every, self.R, self.refuted = range(len(G)), min(problem.R), False
@@ -156,8 +156,8 @@ class Counting:
         self.refuted |= sum(min(room, sensors) for room in rooms) < sensors
 
     def cliques(self, cliques):
-        """Returns the sets of which it is known how many fire within a time: their members, and the least time from a
-        firing of theirs to the one a number of steps later."""
+        """Returns sets of sensors of which few can fire within a time: their members, and the least time between two of
+        their firings, by the number of steps from one to the other."""
         problem, T, sets, gaps = self.problem, self.T, [], {}
         for clique in cliques:
             gap = {x: min(problem.G[x][y] for y in clique if y != x) for x in clique if len(clique) > 1}

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Holds the paths of rooms with floor and ceiling against pyroomacoustics 0.10.1 in three dimensions, in one run.
+"""Compares paths of rooms with floor and ceiling with pyroomacoustics 0.10.1 in three dimensions, in one run.
 
     python3 -m venv VENV && VENV/bin/pip install pyroomacoustics==0.10.1 . && VENV/bin/python benches/peers/rooms_pyroomacoustics.py
 

@@ -85,7 +85,7 @@ def step(**own: Any) -> float:
 
 
 def batch(order: int) -> tuple[float, float]:
-    """Return how many steps of 60 ms, and resets, a batch does in a second of a processor, among eight poles."""
+    """Return the steps of 60 ms and the resets of a batch in a second of processor time, among eight poles."""
     scenes = [scene.replace(poles=scene.poles[:8], max_order=order) for scene in experiments.courses(0, 16)]
     many = sim.Batch(scenes, threads=1)
 

@@ -207,8 +207,7 @@ class FlowRing:
 
     def upcoming(self):
         """Return the next firing as a list of one (sensor, instant), for hardware that fires by itself; empty if the
-        round ends first.
-        """
+        round ends first."""
         return [] if self._next == NOBODY else [(self._next, self._due)]
 
     def _set_moves(self):  # takes in the rate that holds now
@@ -228,7 +227,7 @@ class FlowRing:
         return max(self._before, self._greatest)
 
     def moving(self, speed_mm_s, turn_mrad_s, now_us):
-        """Reports how fast the robot moves and turns, once a control cycle. It holds for half a second, then the top speed does."""
+        """Reports how fast the robot moves and turns, once a control cycle. After half a second without: top speed."""
         if not self._reached(now_us, self._since):  # the first word of a clock in its upper half, or one that has jumped
             self._since, self._before, self._greatest = now_us, max(self._before, self._greatest), 0
         recent = self._recent(now_us)
@@ -458,8 +457,7 @@ class FlowRing:
 
     def echo(self, x, earliest_us, latest_us=None):
         """Report an echo at an instant, or between two: the middle counts. If it may be off by more than 300 us, 5 cm,
-        it is LATE, without a time.
-        """
+        it is LATE, without a time."""
         sensor, flow, latest_us = self._sensors[x], self.flow, earliest_us if latest_us is None else latest_us
         width = (latest_us - earliest_us) & self._mask
         if width >= self._half:
@@ -530,8 +528,7 @@ class FlowRing:
 
     def holds(self, x):
         """Report that a sensor holds its line: it rose after the trigger, or is still high. Its silence counts once,
-        when the line has fallen: `answered`.
-        """
+        when the line has fallen: `answered`."""
         self._show(x, _HELD)
 
     def answered(self, x, answered=True):
@@ -700,8 +697,7 @@ class HcSr04FlowRing:
 
     def too_slow(self):
         """Return true about once a second if `read` is called too seldom: a module had no two readings in a row that
-        are not late.
-        """
+        are not late."""
         now, twice = self._time.ticks_us(), self._twice
         if self._time.ticks_diff(now, self._since) < 950000:
             return False

@@ -1,6 +1,6 @@
-"""Compares eeruf.py over the corpus with what the Rust crate eeruf-core says: python3 test_corpus.py [corpus.txt].
+"""Compares eeruf.py over the corpus with the output of the Rust crate eeruf-core: python3 test_corpus.py [corpus.txt].
 
-Without a file it takes the lines that the repository keeps. It runs under MicroPython too. What the lines mean stands in
+Without a file it takes the lines that the repository keeps. It runs under MicroPython too. The lines are described in
 crates/eeruf-core/tests/all/corpus.rs, and of flow rings in corpus/flow.rs beside it; those that fire by a table are left out."""
 
 import sys

@@ -65,7 +65,7 @@ class Board:
             self.levels[line] = False
 
     def look(self, line):
-        """Return a line's level. Of two edges that have just come only the first counts, so that a look hits every gap."""
+        """Return a line's level. If two edges have just come, only the first counts, so that looks hit every gap."""
         due = [edge for edge in self.ahead if edge[1] == line and edge[0] <= self.now]
         for edge in due:
             self.ahead.remove(edge)
@@ -131,7 +131,8 @@ def run(fault, kind=HcSr04FlowRing, onset_us=0):
 
 
 def check_walls(fault, step_us, **settings):
-    """Check modules on one pin each before walls: 97 % accepted, with samples this far apart, timed from the trigger."""
+    """Check modules on one pin each before walls: 97 % accepted, with samples this far apart, timed from the
+    trigger."""
     board, readings = Board(fault, step_us), []
     ring = HcSr04FlowRing(Flow(4, 25000, seed=1, **settings), [0, 1, 2, 3], machine=board, time=board)
     while len(readings) < 200:

@@ -1,5 +1,4 @@
-"""A ring of HC-SR04 modules on the pins of a Raspberry Pi: ``python ring.py`` prints what is before each, once a
-second.
+"""A ring of HC-SR04 modules on the pins of a Raspberry Pi: ``python ring.py`` prints what is before each, once a second.
 
 The kernel stamps the edges of the echo lines, so that a late loop does not make echo times less accurate. Needs the
 packages ``eeruf`` and ``gpiod``.

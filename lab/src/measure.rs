@@ -133,7 +133,7 @@ fn curve(measured: &Measured, chosen: &Measured) {
     }
 }
 
-/// Prints how often a sound way loses to itself with a planted flaw, which counts as the simpler.
+/// Prints how often a sound way loses against a copy of it with a planted flaw, which counts as the simpler one.
 fn planted(ways: &[MeasuredWay], asked: &MeasureAsked, choose: u64, blocks: u64) -> crate::Answer {
     let Some(sound) = ways.iter().find(|way| way.way.name == "one_by_one_33ms") else { return Ok(()) };
     let controls = Control::PLANTED.map(Some).into_iter().chain([None]);

@@ -74,8 +74,7 @@ class Latency(Result):
 
 @dataclass(frozen=True)
 class NewStep(Result):
-    """The time until a sensor reads a wall right that has come nearer for the first time, where remembering places
-    does not help.
+    """The time until a wall that comes nearer for the first time is read right; remembering places does not help there.
 
     Example:
         >>> import eeruf

@@ -37,9 +37,7 @@ class Result:
 
 
 def _said(value: object, title: str) -> str:
-    """Format a figure as a cell: the median of a spread with its 95 % confidence interval, in percent if the title says
-    so.
-    """
+    """Format a figure as a cell: a spread's median with its 95 % interval, in percent if the title says so."""
     scale, digits = (100.0, 1) if title.endswith("%") else (1.0, 2 if title.endswith("m/s") else 0)
     if value is None:
         return "-"

@@ -1,5 +1,4 @@
-"""The paper's experiments (Sec. 4): robots that stand before walls, a robot that drives between poles; and robots of
-one make.
+"""The paper's experiments (Sec. 4): robots that stand before walls, a robot that drives between poles; and robots of one make.
 
 ``docs/log/experiments.md`` explains the tables, and where the paper promises too much; ``eeruf experiment`` prints
 the same ones. A method is a name or a ``eeruf.sim.Method``, which may have a filter or a firing

@@ -6,8 +6,7 @@ docs/how-to/logs.md lists the formats. A log is a path, a file object, or whatev
 
 Example:
     >>> import eeruf
-    >>> log = eeruf.logs.Firings.of(sensor=[0, 1], fired_us=[0, 500], period=[0, 0], phase=[0, 0], t_echo_us=[7000.0,
-    8000.0])
+    >>> log = eeruf.logs.Firings.of(sensor=[0, 1], fired_us=[0, 500], period=[0, 0], phase=[0, 0], t_echo_us=[7000.0, 8000.0])
     >>> eeruf.logs.diagnose(log).sender.tolist()  # two firings prove nothing
     [-1, -1]
 
@@ -238,7 +237,8 @@ class Checked:
 class Judged(Ranges):
     """The ranges of a log, and what a judge made of them: ``kind``, indices into ``eeruf.KINDS``, -1 for what is no number.
 
-    Of each sensor ``gaps`` counts pauses of more than 1 s and five usual ones, ``backwards`` readings whose time is before that of the
+    Of each sensor ``gaps`` counts pauses above 1 s and five usual ones, ``backwards`` readings whose time is before
+    that of the
     one before; what comes after either is compared with nothing before.
 
     Example:
@@ -395,8 +395,8 @@ def read_log(
 ) -> Ranges:
     """Read the ranges of an MCAP file, a ROS 2 bag (its folder), a ROS 1 bag, a table, lines of name and value, or JSON.
 
-    Whatever is not given is guessed, and ``guesses`` lists it. Of a damaged file what can be read is, and ``damage`` says what
-    cannot. ``topics``, ``fields`` and ``judged`` are for bags, all other arguments for text.
+    Whatever is not given is guessed, and ``guesses`` lists it. A damaged file is read as far as possible; ``damage``
+    names the rest. ``topics``, ``fields`` and ``judged`` are for bags, all other arguments for text.
 
     Args:
         log: a path, a URL or a file object.
@@ -437,8 +437,7 @@ def check(log: object, **options: Unpack[_Options]) -> Checked:
     """Find out from any log of ranges if its sensors read each other's sound, and what to do next.
 
     Args:
-        log: a path, a URL, a file object or a text that was pasted, as :func:`read_log` reads them; a DataFrame of
-        pandas or polars; a
+        log: a path, a URL, a file object or a text that was pasted, as :func:`read_log` reads them; a DataFrame of pandas or polars; a
             dict of columns; an array of one column per sensor; ``Ranges``; or ``Readings`` of the simulator.
         options: as of :func:`read_log`.
 
@@ -661,8 +660,7 @@ def diagnose(log: Firings | _Log, *, tolerance_us: int = 75, max_travel_us: int 
         >>> scene = sim.Scene.from_toml(eeruf.example("scenes/alcove.toml"))
         >>> r = sim.simulate(scene, "dither", periods=300)
         >>> log = eeruf.logs.Firings.of(
-        ...     sensor=r.sensor, fired_us=np.rint(1e6 * r.fired_s), period=r.period, phase=r.phase,
-        t_echo_us=r.earliest_us
+        ...     sensor=r.sensor, fired_us=np.rint(1e6 * r.fired_s), period=r.period, phase=r.phase, t_echo_us=r.earliest_us
         ... )
         >>> bool((eeruf.logs.diagnose(log).sender >= 0).mean() > 0.3)
         True
@@ -686,8 +684,7 @@ def survey(log: Firings | _Log, *, tolerance_us: int = 100, until_us: int = 15_0
     Example:
         >>> import eeruf
         >>> alone = eeruf.logs.Firings.of(
-        ...     sensor=[0] * 9, fired_us=range(0, 900_000, 100_000), period=range(9), phase=[0] * 9,
-        t_echo_us=[7000.0] * 9
+        ...     sensor=[0] * 9, fired_us=range(0, 900_000, 100_000), period=range(9), phase=[0] * 9, t_echo_us=[7000.0] * 9
         ... )
         >>> eeruf.logs.survey(alone).paths["travel_us"].tolist()
         [7000.0]

@@ -14,7 +14,7 @@ use crate::steps::{Steps, output, run, run_line, stem};
 /// Parts to check.
 #[derive(clap::Args)]
 pub(crate) struct Plan {
-    /// Number of tiny problems whose certificates, mutated too, are held against nested loops
+    /// Number of tiny problems whose certificates, mutated too, are compared with nested loops
     #[arg(long, default_value_t = 20_000)]
     tiny: u32,
 }

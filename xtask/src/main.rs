@@ -80,7 +80,7 @@ enum Verb {
     /// Build what `eeruf design --program` writes in each language, and run it to what it accepts, on a simulated Uno
     /// too
     Programs(arduino::Drawn),
-    /// Build the wheel and test it: types, examples, and against what Rust says
+    /// Build the wheel and test it: types, examples, and the same results as in Rust
     Python,
     /// Run a ring on an emulated board, its serial line and the ROS 2 node, and listen with Cyclone DDS, Fast DDS and
     /// pymavlink; build ros2/ with colcon

@@ -1,10 +1,10 @@
 // Times of edges of the echo lines, by interrupts that their changes raise: exact to some 20 us however long loop() takes.
 // EerufArduino.h includes it, and begin() starts it, of one ring on a board.
 //
-// Of an Uno, a Nano and a Mega it takes the interrupts of pin changes, and on a Mega for pins 2, 3 and 18 to 21 their
-// external ones; the Mega's other pins that have one are 10 to 15, 50 to 53 and A8 to A15. Elsewhere it takes what
-// attachInterrupt() gives: on a SAMD, of two pins that share one of its 16 lines (EXTINT) one; on an Uno R4, pins that have
-// one. If a line has none, read() looks at all of them.
+// On an Uno, a Nano and a Mega it takes the pin-change interrupts, and the external ones for pins 2, 3 and 18 to 21 of a
+// Mega, whose other pins with an interrupt are 10 to 15, 50 to 53 and A8 to A15. Elsewhere it takes those of
+// attachInterrupt(): on a SAMD only one of two pins that share one of its 16 lines (EXTINT); on an Uno R4 only some pins.
+// If a line has none, read() samples all lines.
 //
 // SoftwareSerial takes the interrupts of pin changes too: then define EERUF_POLLED before the first include. So do all
 // files of a sketch but one. Included before this, it is an error that says so; after it, the linker finds __vector_3 twice.

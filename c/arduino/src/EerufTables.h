@@ -1,6 +1,6 @@
 // Ready tables for rings of 4, 8 and 12 HC-SR04 modules: no shorter period lets each module rest for 60 ms
-// and keeps four adjacent ones 14.569 ms apart, so that sound from up to 2.5 m has died. Those that a
-// sketch does not name take no room.
+// and keeps four adjacent ones 14.569 ms apart, so that sound from up to 2.5 m has died. Unused
+// tables take no room.
 // Written by `cargo xtask arduino --write` from what `eeruf design` finds; for your own ring:
 //   eeruf design RING.toml --period-only --emit arduino > ring.h
 #pragma once

@@ -36,8 +36,8 @@ fn settings(r: &Random) -> (TurnSettings, BeliefSettings) {
     (turns, belief)
 }
 
-/// Limits of each sensor, and the same as numbers for C: of each sensor window, `t_delta`, group and line. Some fire
-/// together, some share an echo line: two sets of each at most.
+/// Limits of each sensor, also as numbers for C: of each sensor window, `t_delta`, group and line. Some fire together,
+/// some share an echo line: two sets of each at most.
 fn own_limits<const K: usize>(r: &Random, window: u32) -> (EachSensor<K>, Vec<u32>) {
     let t_deltas = [(); K].map(|()| Micros::new(r.within(0, 200)));
     let windows = [(); K].map(|()| Micros::new(r.one_of(&[window, window, r.within(1, window.max(1))])));

@@ -153,7 +153,7 @@ fn change(c: &mut C, what: Do, value: u32, rust: Result<(), RingError>) {
 
 type Table<'s, const M: usize> = Ring<ScheduledFiring<'s, K, M, &'s EachSensor<K>>, EchoFilter<K>, K>;
 
-/// A schedule, and what it allows each sensor.
+/// A schedule, and the limits of each sensor that it allows.
 type Fires<const M: usize> = (Schedule<K, M>, EachSensor<K>);
 
 /// Draws actions that a caller may take now and then.

@@ -1,5 +1,5 @@
-//! A judge of one's own: it accepts as the filter does, and calls a near echo that nothing confirms yet *tentative*,
-//! so that a robot slows down before it knows. `cargo run -p eeruf-core --example own_judge`
+//! A custom judge: it accepts as the filter does, and calls a near echo that nothing confirms yet *tentative*, so that
+//! a robot slows down before it knows. `cargo run -p eeruf-core --example own_judge`
 
 use std::error::Error;
 

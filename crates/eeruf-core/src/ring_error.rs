@@ -106,7 +106,7 @@ pub enum RingError {
         /// The number asked for.
         consecutive: u8,
     },
-    /// An echo between two instants, or echo times, of which the latest comes before the earliest.
+    /// An interval of an echo, of instants or of echo times, whose end is before its beginning.
     Interval {
         /// The earliest, in microseconds.
         earliest: u32,

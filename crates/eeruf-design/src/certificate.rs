@@ -7,8 +7,9 @@ use eeruf_files::AnySchedule;
 use eeruf_period::PeriodProblem;
 use eeruf_period::engine::prove::{NoProof, prove_what_can_be};
 
-/// The text of the certificate that a schedule's period is the shortest, or that none is below `bound`; or for a lower
-/// bound, if that proof has more than `budget` nodes or if `go_on`, called with the nodes so far, returns false.
+/// Returns a certificate as text: that no period is shorter than the schedule's, or than `bound`. If its proof would
+/// have more than `budget` nodes, or if `go_on`, called with the nodes so far, returns false, the certificate is for a
+/// lower bound.
 ///
 /// # Errors
 /// The claim is wrong.

@@ -39,7 +39,7 @@ pub struct RingDesign {
     pub bound: Option<Micros>,
     /// Reason why it is not shorter, in words.
     pub reason: String,
-    /// Slack of the schedule, if the period is proven: of those with this period it has the most.
+    /// Slack of the schedule, if the period is proven: no other schedule with this period has more.
     pub to_spare: Option<ToSpare>,
     /// True if period and schedule are the atlas's, and nothing was searched.
     pub from_atlas: bool,

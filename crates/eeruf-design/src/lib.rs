@@ -1,5 +1,5 @@
-//! From what a designer knows of a ring to its shortest firing period: what `eeruf design` and the page in a browser
-//! have in common, so that both give the same answer.
+//! Design of a ring, from its requirements to its shortest firing period: shared by `eeruf design` and the page in a
+//! browser, so that both give the same answer.
 //!
 //! | file | content |
 //! |---|---|

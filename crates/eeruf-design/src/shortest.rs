@@ -37,7 +37,7 @@ pub struct FoundPeriod {
     pub schedule: AnySchedule,
     /// Reason why it is not shorter, in words.
     pub reason: String,
-    /// Slack of that schedule, if the period is proven: of those with this period it has the most.
+    /// Slack of that schedule, if the period is proven: no other schedule with this period has more.
     pub to_spare: Option<ToSpare>,
     /// True if period and schedule come from the atlas, and nothing was searched.
     pub from_atlas: bool,

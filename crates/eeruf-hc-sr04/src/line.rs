@@ -67,7 +67,7 @@ impl Line {
         health: Health::Well,
     };
 
-    /// Returns the meaning of an edge for the firing at `fired`; it came up to `before` before it was seen.
+    /// Returns the meaning of an edge for the firing at `fired`; it was seen at most `before` after it came.
     pub(crate) fn edge(&mut self, edge: Edge, before: Micros, fired: Instant, settings: &Settings) -> Shown {
         // Without a trigger nothing is seen through the cable.
         let deaf = if self.is_held { Micros::ZERO } else { settings.deaf };

@@ -53,7 +53,7 @@ impl<T, I, D, const K: usize> Lines<T, I, D, K> {
         self.settings.allow(min_refire)
     }
 
-    /// Returns the meaning of this edge for the firing at `fired`; it came up to `before` before it was seen.
+    /// Returns the meaning of this edge for the firing at `fired`; it was seen at most `before` after it came.
     pub(crate) fn edge(&mut self, edge: Edge, before: Micros, fired: Instant) -> Shown {
         let line = self.lines.get_mut(usize::from(edge.sensor));
         line.map_or(Shown::Nothing, |line| line.edge(edge, before, fired, &self.settings))

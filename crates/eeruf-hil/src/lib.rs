@@ -79,7 +79,7 @@ pub const MOST_AHEAD: usize = 48;
 pub struct Ahead {
     /// The edge, and when.
     pub edge: Edge,
-    /// True if its interrupt gets lost: the line changes, and no interrupt says so.
+    /// True if its interrupt gets lost: the line changes without an interrupt.
     pub lost: bool,
 }
 
@@ -99,7 +99,7 @@ impl Ahead {
 
 /// A message of the board.
 ///
-/// Six words: what it is and which sensor it concerns, and five more.
+/// Six words: the kind with the sensor, and five more.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Record(pub [u32; 6]);
 

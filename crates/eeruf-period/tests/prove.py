@@ -15,8 +15,7 @@ def text(word, numbers):
 
 def countings(checker, head, count):
     """Return the counting lines that the checker accepts, a list for each argument; cliques that contain all sensors
-    come first.
-    """
+    come first."""
     def accepted(lines):
         try:
             checker.Problem(checker.Lines("\n".join([*head, *lines, "end", ""])))

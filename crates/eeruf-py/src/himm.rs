@@ -178,8 +178,8 @@ impl Himm {
         Ok(())
     }
 
-    /// Enter what a simulation's ring reads, from where each sensor really stood: accepted echoes up to a range as
-    /// obstacles; farther ones, and that nothing is there, clear the way.
+    /// Enter the readings of a simulation's ring from each sensor's true place: accepted echoes within a range are
+    /// obstacles; farther ones, and free space, clear the way.
     ///
     /// Args:
     ///     readings: of ``Simulation.step``.

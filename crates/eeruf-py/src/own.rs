@@ -21,7 +21,7 @@ use crate::{
     robot::Robot,
 };
 
-/// Echoes that one firing of one sensor has heard, for a filter of one's own in a :class:`Simulation`.
+/// Echoes that one firing of one sensor has heard, for a custom filter in a :class:`Simulation`.
 ///
 /// Example:
 ///     >>> from eeruf import sim

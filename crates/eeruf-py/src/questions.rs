@@ -15,7 +15,7 @@ use crate::{
     watch::{Watch, control_flow},
 };
 
-/// Find what fits into a period: whether the needs do, and the largest ``T_delta``. Ctrl-C ends it.
+/// Find whether the needs fit into a period, and the largest ``T_delta`` that does. Ctrl-C ends it.
 ///
 /// Args:
 ///     period_us: the period, in whole ticks.

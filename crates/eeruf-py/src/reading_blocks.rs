@@ -44,7 +44,7 @@ impl ReadingBlocks {
     }
 }
 
-/// As :func:`simulate`, but block by block: however long it is, it needs no more memory than a block.
+/// Like :func:`simulate`, but block by block: however long it is, it needs no more memory than a block.
 ///
 /// Args:
 ///     scene: as for :func:`simulate`, and so all others.

@@ -492,7 +492,7 @@ impl Robot {
         (0..self.robot.sensors.len()).map(|sensor| self.robot.height_m(sensor)).collect()
     }
 
-    /// The outline: the radius of a disc, (length, width) of a box, or the corners of a polygon; None without.
+    /// The outline: the radius of a disc, (length, width) of a box, or the corners of a polygon; None without one.
     #[getter]
     fn body<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyAny>>> {
         shown_body(py, self.robot.body.as_ref())
@@ -595,7 +595,7 @@ impl Robot {
         }
     }
 
-    /// The points that it drives through, (x, y) in metres; None without.
+    /// The points that it drives through, (x, y) in metres; None if there are none.
     #[getter]
     fn waypoints_m(&self) -> Option<Vec<(f64, f64)>> {
         match &self.robot.motion {
@@ -604,7 +604,7 @@ impl Robot {
         }
     }
 
-    /// Speed through its waypoints, in m/s; None without.
+    /// Speed through its waypoints, in m/s; None without any.
     #[getter]
     fn speed_m_s(&self) -> Option<f64> {
         match &self.robot.motion {

@@ -250,8 +250,8 @@ impl Scene {
 
     /// Read an occupancy grid, as the ROS ``map_server`` saves it: walls along the outlines of what is occupied.
     ///
-    /// A cell is occupied if it is with a probability above the file's ``occupied_thresh``; one of which nothing is
-    /// known is not. Add robots with :meth:`replace`.
+    /// A cell is occupied if its probability is above the file's ``occupied_thresh``; an unknown one is not. Add robots
+    /// with :meth:`replace`.
     ///
     /// Args:
     ///     path: of the YAML file, which names a PGM picture beside it.

@@ -1,4 +1,4 @@
-//! The command line: the parameters, and what stands above them.
+//! The command line: the parameters, and what overrides them.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;

@@ -335,7 +335,7 @@ mod tests {
         (Level::Ok, "well".to_owned())
     }
 
-    /// Adds a sensor that sees something.
+    /// Level and message of a sensor that sees something.
     fn sees() -> (Level, String) {
         (Level::Ok, "obstacle,".to_owned())
     }

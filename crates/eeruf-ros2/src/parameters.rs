@@ -210,7 +210,7 @@ impl<'de> Visitor<'de> for All<'_> {
 /// A part of a file: of nodes, namespaces, or patterns for them. Sets the parameters that are for this node and skips
 /// the others, whatever they hold.
 struct Nodes<'p> {
-    /// Place where the part stands: empty at the top, or as `/robot_1/eeruf`.
+    /// Path of the part: empty at the top, otherwise like `/robot_1/eeruf`.
     path: String,
     /// The node's full name.
     node: &'p str,

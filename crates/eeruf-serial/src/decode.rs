@@ -38,7 +38,7 @@ pub enum Message {
     },
 }
 
-/// Number of bytes by which a firing of a ring that hopped is longer: how the ring weighed the reading.
+/// Number of extra bytes in a firing of a hopping ring: how the ring weighed the reading.
 const HOW: usize = 6;
 
 /// A message and its frame's number.

@@ -29,11 +29,9 @@ def animation(
     frames: int = 160,
     ax: Axes | None = None,
 ) -> FuncAnimation:
-    """Some periods slowed down: each sensor fires, the sound that it will hear travels along its path, the reading
-    comes in.
+    """Some periods slowed down: each sensor fires, the sound that it will hear travels its path, the reading comes in.
 
-    A dot is sound on its way to the sensor that hears it first. When it arrives a disc stays at the sensor for a
-    while: blue for a
+    A dot is sound on its way to the sensor that hears it first. When it arrives a disc stays at the sensor for a while: blue for a
     reading that is right and accepted, vermilion for one that is wrong and accepted, open for one that is not accepted.
 
     Args:
@@ -45,8 +43,7 @@ def animation(
         ax: where to draw.
 
     Returns:
-        A film of matplotlib, for ``save("crosstalk.gif")`` (with ``writer="pillow"``) or ``to_jshtml()`` in a
-        notebook. Keep it in a
+        A film of matplotlib, for ``save("crosstalk.gif")`` (with ``writer="pillow"``) or ``to_jshtml()`` in a notebook. Keep it in a
         variable until it has been saved.
 
     Raises:

@@ -30,17 +30,14 @@ def scene(
 ) -> Axes:
     """Walls, poles and robots from above, and the paths of sound between them (as the paper's Fig. 1).
 
-    Walls that return less are drawn thinner, openings dotted. Poles have their size, and a ring round them where that
-    is too small
+    Walls that return less are drawn thinner, openings dotted. Poles have their size, and a ring round them where that is too small
     to be seen. A short line shows the direction of each sensor.
 
     Args:
         scene: the walls, poles and robots.
         paths: of ``Scene.paths``; the shortest are drawn, stronger the fewer bounces they take.
-        readings: of a simulation of this scene, to draw who fooled whom: along the ways of foreign sound that was
-        believed, from the
-            sensor that sent it to the one that took it for its own, thicker the more often. Robots stand where the
-            scene has them,
+        readings: of a simulation of this scene, to draw who fooled whom: along the ways of foreign sound that was believed, from the
+            sensor that sent it to the one that took it for its own, thicker the more often. Robots stand where the scene has them,
             so ways of moving robots are left out.
         source: of the paths, (x, y) in metres, to mark it.
         receivers: of the paths, shape (n, 2) in metres, to mark them.

@@ -226,7 +226,8 @@ impl Asked {
         })
     }
 
-    /// A sketch: built as the IDE does, from its folder alone. One of eight modules or less is run in the alcove, too.
+    /// Returns figures of a sketch, built as the IDE does, from its folder alone. With eight modules or fewer it also
+    /// runs in the alcove.
     fn sketch(&self, folder: &Path, seconds: u32, world: &Path) -> Result<Figures> {
         let mut text = sketch_in(folder)?;
         let mut eeprom = String::new();

@@ -27,8 +27,8 @@ fn ring(modules: u32) -> String {
 pub(super) fn check(write: bool) -> Result<()> {
     let mut text = String::from(
         "// Ready tables for rings of 4, 8 and 12 HC-SR04 modules: no shorter period lets each module rest for 60 ms\n\
-         // and keeps four adjacent ones 14.569 ms apart, so that sound from up to 2.5 m has died. Those that a\n\
-         // sketch does not name take no room.\n\
+         // and keeps four adjacent ones 14.569 ms apart, so that sound from up to 2.5 m has died. Unused\n\
+         // tables take no room.\n\
          // Written by `cargo xtask arduino --write` from what `eeruf design` finds; for your own ring:\n\
          //   eeruf design RING.toml --period-only --emit arduino > ring.h\n\
          #pragma once\n#include <EerufArduino.h>\n",

@@ -1,4 +1,4 @@
-//! [`Plan`]: what a ring asks of whatever decides when to fire.
+//! [`Plan`]: the interface between a ring and the rule that decides when it fires.
 //!
 //! A plan never reads a clock. The caller passes `now` and gets the next deadline back.
 

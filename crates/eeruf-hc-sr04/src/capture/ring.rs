@@ -7,8 +7,8 @@ use crate::error::SetupError;
 use crate::ring::HcSr04Ring;
 use crate::settings::Settings;
 
-/// Time by which firings go to the hardware ahead, a choice: a loop may be late by as much, less the time for which the
-/// hardware is busy with a sensor.
+/// Time by which firings are handed to the hardware in advance, a choice: a loop may be late by as much, less the time
+/// for which the hardware is busy with a sensor.
 const AHEAD: Micros = Micros::from_millis(10);
 
 /// A ring of modules on hardware that triggers them and captures their edges, such as PIO, RMT or a timer.

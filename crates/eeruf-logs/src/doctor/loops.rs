@@ -1,5 +1,5 @@
 //! A loop that waits for each echo before it fires the next sensor is a schedule: foreign sound on a path of its own
-//! makes the sum of two readings constant, and the second bounce of one's own sound their difference.
+//! makes the sum of two readings constant, and the second bounce of a sensor's own sound their difference.
 
 use super::series::Scatter;
 

@@ -42,7 +42,7 @@ pub(crate) struct Odd {
     pub(crate) jumps: f64,
     /// Share at no recurring value.
     pub(crate) loose: f64,
-    /// Share at the most frequent value.
+    /// Share of all values that equal the most frequent one.
     pub(crate) stands: f64,
     pub(crate) echoes: usize,
 }

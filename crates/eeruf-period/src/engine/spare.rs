@@ -29,7 +29,7 @@ fn harder(problem: &Problem, [separation, gap, window]: [u32; 3]) -> Problem {
     }
 }
 
-/// The schedule with most to spare among those with this period, beginning with a given one. It takes at most `budget`
+/// The schedule with the most slack among those with this period, beginning with a given one. It takes at most `budget`
 /// nodes, a third for each need, and stops when `go_on`, called with the nodes so far, returns false.
 #[must_use]
 pub fn most_to_spare(

@@ -27,8 +27,8 @@ pub struct Physics {
     /// True if a threshold detector hears faint echoes later. An echo just at the threshold is heard a whole burst
     /// late.
     pub range_walk: bool,
-    /// True if sounds of one firing that reach a receiver within a burst of each other add as phasors, by the phases
-    /// of the carrier, and the envelope of the sum crosses the threshold; that has `range_walk` in it. Otherwise each
+    /// True if sounds of one firing that reach a receiver within a burst of each other add as phasors, by the phases of
+    /// the carrier, and the envelope of the sum crosses the threshold; `range_walk` is then part of it. Otherwise each
     /// is heard on its own. No preset has it.
     pub interference: bool,
     /// Time for which a path fades in the same way, in seconds: the time after which the correlation has fallen to 1/e.

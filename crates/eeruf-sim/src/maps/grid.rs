@@ -63,7 +63,8 @@ impl OccupancyGrid {
         self.cell_m
     }
 
-    /// Returns true if a cell is occupied, counted from the lower left; none is outside the grid.
+    /// Returns true if the cell in this column and row, counted from the lower left, is occupied. Cells outside the
+    /// grid are not.
     pub fn is_occupied(&self, column: usize, row: usize) -> bool {
         column < self.width && row < self.height && self.occupied[row * self.width + column]
     }

@@ -118,7 +118,7 @@ fn lags(sensors: usize, period: Micros, neighbours: u8) -> Vec<Micros> {
     (0..sensors).map(lag).collect()
 }
 
-/// Largest shift of a firing by dither: that of the paper's waits, but at most one with which no sensor fires again
+/// Largest shift of a firing by dither: as large as the paper's waits, but small enough that no sensor fires again
 /// while it listens.
 pub(super) fn widest_dither(robot: &Robot) -> Micros {
     widest_wait(robot.period, robot.neighbours).min(robot.period.saturating_sub(robot.window))

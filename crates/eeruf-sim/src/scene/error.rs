@@ -71,7 +71,7 @@ pub enum SceneError {
         /// Indices of the two poles.
         poles: [usize; 2],
     },
-    /// Temperature, humidity or pressure outside what the formulas hold for.
+    /// Temperature, humidity or pressure outside the range of the formulas.
     Air {
         /// The name of the quantity.
         quantity: &'static str,

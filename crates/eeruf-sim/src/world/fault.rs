@@ -115,9 +115,9 @@ pub enum FaultKind {
         hinge_m: [f64; 2],
         /// The width in metres.
         length_m: f64,
-        /// The direction from the hinge before, in degrees counter-clockwise from the x axis.
+        /// The door's direction before the fault, in degrees counter-clockwise from the x axis.
         from_deg: f64,
-        /// The direction from the hinge after, in degrees.
+        /// The door's direction after it, in degrees.
         to_deg: f64,
     },
 }

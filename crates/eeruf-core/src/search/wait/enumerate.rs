@@ -48,7 +48,7 @@ impl Enumeration<'_> {
         (&self.a, &self.b)
     }
 
-    /// Moves to the next table; `Exhausted` after the last. After `BudgetSpent` the walk goes on where it stopped.
+    /// Moves to the next table; `Exhausted` after the last. After `BudgetSpent` the walk resumes where it stopped.
     pub(crate) fn advance(&mut self, budget: &mut Budget<'_>) -> Outcome {
         let last = self.problem.lag.len() - 1;
         let Some(mut k) = self.depth else {

@@ -83,8 +83,8 @@ struct Path {
 }
 
 impl Path {
-    /// The microseconds after which sound arrives along it. Two consecutive readings see it change by at most P and
-    /// what the motion allows.
+    /// Returns the time after which sound arrives along the path, in microseconds. Between two consecutive readings it
+    /// changes by at most P and what the motion allows.
     fn heard_after(&mut self, dice: &mut Dice) -> u64 {
         let most = (dice.travel - self.travelled) as i64;
         self.travelled = dice.travel;

@@ -38,7 +38,7 @@ pub(super) struct Course {
     pub(super) fired: u32,
     /// One of this many events is followed by a step back of the clock; 0 for never.
     pub(super) clock_steps: u32,
-    /// The change of echoes that odometry expects, in microseconds a second, and the most by which that is wrong.
+    /// The change of echoes that odometry expects, in microseconds a second, and the largest error of that.
     pub(super) expected: i64,
     pub(super) noise: u32,
     /// Greatest width, in microseconds, of the intervals within which edges are known to lie; one of 64 is up to 4 ms.
@@ -271,8 +271,8 @@ impl<'s> World<'s> {
         }
     }
 
-    /// The length of a path, which never changes faster than it may. If it can, it makes the receiver repeat its last
-    /// reading, or show the change that odometry expects. The middle of the edge's interval comes `off` before it.
+    /// Draws a path's length within its allowed rate of change: if possible so that the receiver repeats its last
+    /// reading, or shows the change that odometry expects. The middle of the edge's interval comes `off` before it.
     fn length(&mut self, receiver: usize, least: u32, at: u64, off: i64) -> u32 {
         // A step of the clock between the two sounds changes what the ring sees of it as well.
         let steps = if self.course.clock_steps > 0 { STEPS } else { 0 };

@@ -44,7 +44,7 @@ const LOOK_S: f64 = 0.01;
 pub enum Moving {
     /// The robot stands.
     Standing,
-    /// The robot drives along its free way, and back, and so on.
+    /// The robot drives to and fro along its free way.
     Driving,
     /// The robot turns on the spot.
     Turning,

@@ -15,7 +15,8 @@ pub struct Figures {
     /// Largest share of another robot's sound in one sensor's accepted readings, among all robots' sensors with at
     /// least five.
     pub others_at_worst: Option<Spread>,
-    /// Share of the accepted readings that are foreign sound, of the robot's other sensors or of an earlier firing too.
+    /// Share of the accepted readings that are foreign sound, including that of the robot's other sensors or of an
+    /// earlier firing.
     pub foreign_of_accepted: Option<Spread>,
     /// Share of the good readings that were not accepted.
     pub good_lost: Option<Spread>,

@@ -223,7 +223,7 @@ impl Receiver {
         self.pending.drain(..held);
     }
 
-    /// Adds an arrival. Those before the present moment are not handed in.
+    /// Adds an arrival, which is never before the present moment.
     #[inline]
     pub(crate) fn insert(&mut self, arrival: Arrival, hearing: &Hearing) {
         let late = hearing.late(&arrival, self.fired);

@@ -23,7 +23,7 @@ pub(crate) struct EdgePath {
     pub(crate) arrival_rad: f64,
     /// Share of the amplitude after diffraction and spreading, at the wave number of the query.
     pub(crate) spread: f64,
-    /// This share without its upper bound, and that wave number; `None` for two paths heard as one.
+    /// Share and wave number without the share's upper bound; `None` for two paths heard as one.
     unbounded: Option<[f64; 2]>,
     /// The edge, for recognising duplicates.
     pub(crate) at: Point,

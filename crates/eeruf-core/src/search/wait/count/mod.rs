@@ -1,6 +1,6 @@
 //! Number of tables: depth first over the sensors, with what was counted before kept in memory.
 //!
-//! What the sensors already placed mean to those still to come is little: which `|d|` (and `s`) are still free, and
+//! Little about the sensors already placed matters to those still to come: which `|d|` (and `s`) are still free, and
 //! which waits remain to each sensor that conflicts with one of them. Two partial tables that leave the same remainder
 //! have the same number of completions, so it is counted once and kept. The last sensor is not visited pair by pair:
 //! for each free `|d|` the waits left to it are the common bits of three words.

@@ -32,7 +32,7 @@ struct Counts {
     moved: usize,
 }
 
-/// Places, and what robots do there.
+/// The places, and the robots' motion there.
 #[derive(Clone, Copy, PartialEq)]
 enum Where {
     Alcoves,

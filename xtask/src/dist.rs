@@ -82,7 +82,7 @@ fn tool(name: &str) -> PathBuf {
 
 /// A compiler that has the libraries of a target, or builds them.
 struct Compiler {
-    /// Environment of a build that uses it.
+    /// Environment variables of a build by this compiler.
     environment: Vec<(&'static str, &'static str)>,
     /// Folder of the builds; compilers from different places must not share one.
     target_folder: &'static str,

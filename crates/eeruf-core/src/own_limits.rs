@@ -96,7 +96,7 @@ pub struct EachSensor<const K: usize> {
     limits: [SensorLimits; K],
     /// The group that each sensor fires together with, from 1; 0 for none.
     groups: [u8; K],
-    /// The echo line that each shares, from 1; 0 for one of its own.
+    /// For each sensor, the echo line that it shares, from 1; 0 for a line of its own.
     lines: [u8; K],
 }
 

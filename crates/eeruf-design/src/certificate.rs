@@ -26,7 +26,7 @@ pub fn certify(
 /// The claim that a certificate states, and the size of its proof. Nothing is checked: `checker/check_period.py` does.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stated {
-    /// The period of its schedule, in ticks.
+    /// The period of the schedule, in ticks.
     pub period: u32,
     /// Proven bound of the period, in ticks.
     pub bound: u32,

@@ -11,7 +11,7 @@ use serde::de::{Deserializer, Error, IntoDeserializer, SeqAccess, Visitor};
 pub enum Each<T> {
     /// One value for all.
     All(T),
-    /// One value for each, in their order.
+    /// One value for each sensor, in order.
     Of(Vec<T>),
 }
 

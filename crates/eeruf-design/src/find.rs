@@ -28,7 +28,7 @@ pub struct RingDesign {
     pub schedule: AnySchedule,
     /// The change that `t_delta` has to cover, motion included.
     pub t_delta: Micros,
-    /// The ring, with that `t_delta`.
+    /// The ring, with the design's `t_delta`.
     pub spec: RingSpec,
     /// The shortest period, or the best found.
     pub found: Found<MAX_SENSORS>,
@@ -100,7 +100,7 @@ impl RingDesign {
         if self.found.proven { self.spec.what_if(control) } else { Ok(Vec::new()) }
     }
 
-    /// The text of its [certificate](certify).
+    /// The text of the design's [certificate](certify).
     ///
     /// # Errors
     /// As for [`certify`].

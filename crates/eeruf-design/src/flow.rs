@@ -9,9 +9,9 @@ use crate::ring::RingSpec;
 /// The settings of a ring that fires by flow, for [`FlowRing`](eeruf_core::flow::FlowRing).
 #[derive(Clone, Debug)]
 pub struct FlowDesign {
-    /// Settings of its firing.
+    /// Settings of the ring's firing.
     pub turns: TurnSettings,
-    /// Settings of its judge.
+    /// Settings of the ring's judge.
     pub belief: BeliefSettings,
     /// The longest time for which its sensors listen.
     pub window: Micros,

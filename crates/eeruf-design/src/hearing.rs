@@ -18,7 +18,7 @@ const SAME_DEG: f64 = 1e-9;
 /// A sensor as seen by others.
 struct Heard<'a> {
     at: [f64; 2],
-    /// Sine and cosine of its heading.
+    /// Sine and cosine of the sensor's heading.
     heading: (f64, f64),
     module: &'a Module,
     absorption_db_per_m: f64,

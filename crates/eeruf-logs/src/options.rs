@@ -89,7 +89,7 @@ pub struct FieldChoice {
     pub topic: String,
     /// The path to the field, such as `distance_mm[]` or `sonars[].range`.
     pub path: String,
-    /// The unit of its values.
+    /// The unit of the field's values.
     pub unit: RangeUnit,
 }
 

@@ -60,7 +60,7 @@ pub enum Shape {
 /// A drawn shape.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Marker {
-    /// The frame of its points.
+    /// The frame of the marker's points.
     pub frame: String,
     /// Namespace of the number: a marker replaces the one with the same namespace and number.
     pub namespace: String,

@@ -34,7 +34,7 @@ pub struct Report {
 pub struct Guess {
     /// The subject of the guess.
     pub what: String,
-    /// The guessed value, and its basis.
+    /// The guessed value, and the basis of the guess.
     pub value: String,
     /// The options that override it.
     pub option: String,

@@ -40,7 +40,7 @@ pub struct PeriodProblem<'a> {
 /// The shortest period for a ring, or the best found.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ShortestPeriod {
-    /// A schedule with that period.
+    /// A schedule with the shortest period found.
     pub schedule: Schedule<MAX_SENSORS>,
     /// Proven bound of the period.
     pub bound: Micros,

@@ -81,7 +81,7 @@ impl Himm {
         Ok(self.grid.get()?.cell_m())
     }
 
-    /// Returns true if cells beside certain ones grow faster.
+    /// Returns true if cells grow faster beside cells with certainty.
     #[getter]
     fn growth(&self) -> PyResult<bool> {
         Ok(self.grid.get()?.growth)

@@ -18,9 +18,9 @@ const CRC: Crc<u16, Table<1>> = Crc::<u16, Table<1>>::new(&CRC_16_IBM_3740);
 pub enum Message {
     /// The board introduces itself, now and then.
     Hello {
-        /// Number of its sensors, 1 to 64.
+        /// Number of the board's sensors, 1 to 64.
         sensors: u8,
-        /// Name of its clock.
+        /// Name of the board's clock.
         clock: String,
     },
     /// A firing, and its outcome.

@@ -40,7 +40,7 @@ const EDGE_FAULTS: [(&str, &str, &[&str]); 6] = [
 ];
 const FORGOTTEN: &str = "forgotten call";
 const EDGE_SKETCH: &str = "c/arduino/world/edges.ino";
-/// Pins of its triggers, then of its echoes.
+/// Pins of the sketch's triggers, then of its echoes.
 const EDGE_PINS: [u8; 8] = [4, 5, 6, 7, 8, 2, 14, 3];
 /// Echo times of the file's walls, in microseconds: those of the healthy sensors, and the near one.
 const WALL_US: u32 = 5_830;

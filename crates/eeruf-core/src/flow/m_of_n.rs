@@ -10,7 +10,7 @@ use crate::time::{Instant, Micros};
 /// No reading to compare with.
 const NOTHING: Micros = NO_ECHO;
 
-/// A reading, and the change expected of it since then.
+/// A reading, and the expected change since then.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 struct Vote {

@@ -11,7 +11,7 @@ use crate::common::random::Random;
 const SENSORS: usize = 6;
 const T_DELTA: Micros = Micros::new(80);
 const P: u32 = 150;
-/// Begin of a run, two seconds before the clock wraps.
+/// Start of a run, two seconds before the clock wraps.
 const BEGIN: Instant = Instant::from_micros(u32::MAX - 2_000_000);
 
 /// Number of a sensor's readings, and of those accepted.

@@ -3,7 +3,7 @@
 use eeruf_core::{Instant, Layout, Micros, Requirements, Ring, RingConfig, ScheduledRing, VerifiedSchedule, schedule};
 
 pub(crate) const K: usize = 4;
-/// Begin of a run, shortly before the clock wraps.
+/// Start of a run, shortly before the clock wraps.
 pub(crate) const BEGIN: Instant = Instant::from_micros(u32::MAX - 700_000);
 
 /// A table from `eeruf design` that leaves each module 115 ms.

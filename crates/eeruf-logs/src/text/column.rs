@@ -89,7 +89,7 @@ impl Column {
         numbers > 0 && !is_dash && self.texts + self.calendars <= numbers
     }
 
-    /// The median of its positive numbers.
+    /// The median of the column's positive numbers.
     pub(super) fn median(&self) -> f64 {
         let mut sorted: Vec<_> = self.numbers.iter().copied().filter(|&number| number > 0.0).collect();
         sorted.sort_by(f64::total_cmp);

@@ -13,7 +13,7 @@ use crate::engine::turns::Turns;
 pub(crate) struct Family {
     pub(crate) generators: Vec<Vec<usize>>,
     pub(crate) greatest: usize,
-    /// The images of that sensor, itself included, in ascending order.
+    /// The images of `greatest`, itself included, in ascending order.
     orbit: Vec<usize>,
 }
 

@@ -97,7 +97,7 @@ impl OccupancyGrid {
         })
     }
 
-    /// The direction of its rows, in radians.
+    /// The direction of the grid's rows, in radians.
     pub fn heading_rad(&self) -> f64 {
         self.origin[2]
     }

@@ -158,7 +158,7 @@ pub(crate) struct PeriodFiring {
     phase: Phase,
     /// The phase of each sensor's last firing.
     fired_in: [Phase; MAX_SENSORS],
-    /// The next of these firings.
+    /// The index of the next firing.
     next: usize,
     start: Instant,
     /// Time since each sensor fired, when the present period begins as planned; a long time for those that have not.

@@ -117,7 +117,7 @@ impl Method {
         self.row().on_demand
     }
 
-    /// The judge of its readings.
+    /// The judge of the method's readings.
     pub(crate) const fn judge(self) -> JudgeKind {
         self.row().judge
     }

@@ -22,7 +22,7 @@ pub struct Attribution {
     pub order: Option<u32>,
     /// Number of readings that were wrong this way, believed or not.
     pub wrong: usize,
-    /// Number of those that the method believed.
+    /// Number of wrong readings that the method believed.
     pub accepted: usize,
 }
 

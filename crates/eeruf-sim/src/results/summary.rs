@@ -22,7 +22,7 @@ pub struct Summary {
     pub method: Method,
     /// Number of readings.
     pub readings: usize,
-    /// Number of those that were accepted.
+    /// Number of accepted readings.
     pub accepted: usize,
     /// Share of all readings that were accepted and wrong: the harmful ones.
     pub wrong_of_all: f64,

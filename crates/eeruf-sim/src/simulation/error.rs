@@ -36,7 +36,7 @@ pub enum SimulationError {
     Unverified {
         /// The robot.
         robot: usize,
-        /// The violation of its own schedule.
+        /// The violation of the robot's own schedule.
         violation: Violation,
     },
     /// A robot's schedules make no ladder for [`Method::Adaptive`].

@@ -7,7 +7,7 @@ use crate::{geometry::Point, scene::Mesh};
 pub(crate) struct Ends {
     /// Triangles of the source, then of each receiver.
     triangles: Vec<u32>,
-    /// For each point, the end of its share.
+    /// For each point, the end of its triangles in the list.
     until: Vec<usize>,
     around: Vec<u32>,
 }

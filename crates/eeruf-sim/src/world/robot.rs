@@ -43,7 +43,7 @@ pub struct Robot {
     pub heights_m: Vec<f64>,
     /// Pose of the robot at the start.
     pub pose: Pose,
-    /// Motion from there.
+    /// Motion from the start pose on.
     pub motion: Motion,
     /// The clock.
     pub clock: Clock,

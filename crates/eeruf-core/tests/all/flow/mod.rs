@@ -15,7 +15,7 @@ use world::{Dice, Seen, World};
 
 const DEFAULT: BeliefSettings = BeliefSettings::DEFAULT;
 const CONFIG: RingConfig = RingConfig::new().with_window(Micros::from_millis(25)).with_blanking(Micros::new(300));
-/// Begin of a run, three seconds before the clock wraps.
+/// Start of a run, three seconds before the clock wraps.
 const BEGIN: u32 = u32::MAX - 3_000_000;
 
 /// The share of sensors whose first reading was believed by the second firing and by the third, in percent.

@@ -50,11 +50,11 @@ pub struct Cell {
     pub t50_t90_ms: [f64; 2],
     /// The time in which 95 % of them are seen, in ms; infinite if fewer are.
     pub t95_ms: Estimate,
-    /// The share of those that are never seen.
+    /// The share of things that are never seen.
     pub never: f64,
     /// False stops.
     pub false_stops: u32,
-    /// The time of those, in minutes.
+    /// The time over which false stops were counted, in minutes.
     pub minutes: f64,
     /// False stops a minute.
     pub false_stops_per_min: Estimate,

@@ -29,7 +29,7 @@ pub struct Sight {
     pub latency_ms: f64,
     /// False stops before it appeared.
     pub false_stops: u32,
-    /// The time of those, in seconds.
+    /// The time over which false stops were counted, in seconds.
     pub watched_s: f64,
     /// Share of time in which foreign sound was believed and wrong.
     pub foreign: f64,

@@ -51,7 +51,7 @@ pub(super) struct Thing {
     pub kind: ThingKind,
     /// The sensor before which it was drawn.
     pub sensor: usize,
-    /// The distance of its nearest point from that sensor, in metres.
+    /// The distance of the thing's nearest point from the sensor, in metres.
     pub distance_m: f64,
     poles: Vec<Pole>,
     walls: Vec<Wall>,

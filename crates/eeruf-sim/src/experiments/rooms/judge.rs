@@ -101,7 +101,7 @@ pub struct RoomFigures {
     pub belief: BeliefShares,
     /// 95 % confidence interval of the mean share that is right.
     pub belief_right_95: [f64; 2],
-    /// The least of these shares.
+    /// The least share of any room that is right.
     pub belief_right_worst: f64,
     /// Accepted echoes that were right in a second.
     pub right_echoes_per_s: f64,

@@ -94,7 +94,7 @@ pub struct Group {
     /// Number of robots; `None` for any number.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub robots: Option<usize>,
-    /// Number of these placings.
+    /// Number of placings in the group.
     pub placings: usize,
     /// The methods in the order asked for, with their figures over these placings.
     #[serde(serialize_with = "by_name")]

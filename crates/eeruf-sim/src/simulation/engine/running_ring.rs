@@ -22,7 +22,7 @@ const DITHER: u64 = 3;
 /// A running ring.
 pub(crate) struct RunningRing {
     pub(crate) world: Arc<World>,
-    /// The number of its robot.
+    /// The number of the ring's robot.
     pub(crate) robot: usize,
     pub(crate) ring: Box<dyn RingRunner>,
     pub(crate) clock: Ticker,

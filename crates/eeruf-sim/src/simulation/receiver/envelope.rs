@@ -18,11 +18,11 @@ use super::Arrival;
 /// A single sound.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Wave {
-    /// The number of its receiver.
+    /// The number of the receiver.
     pub(crate) receiver: usize,
     /// Start, in true nanoseconds.
     pub(crate) onset: u64,
-    /// Length of its burst in nanoseconds.
+    /// Length of the sound's burst in nanoseconds.
     pub(crate) burst: u64,
     /// The phase as a share of a turn.
     pub(crate) turn: f32,

@@ -158,7 +158,7 @@ pub(crate) struct Receiver {
     own_until: u64,
     /// Time when it last fired.
     pub(crate) fired: u64,
-    /// Number of its firings.
+    /// Number of the sensor's firings.
     pub(crate) firings: u32,
     /// The next arrival that it will hear.
     next: Option<Arrival>,

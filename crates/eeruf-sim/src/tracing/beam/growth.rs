@@ -23,7 +23,7 @@ pub(crate) struct Growth<'a> {
     pub(crate) last_for_receivers: bool,
     /// Sound of the source by direction, if certainly inaudible sound may be left out.
     pub(crate) aim: Option<Aim<'a>>,
-    /// Switch that ends it early.
+    /// Switch that ends the search early.
     pub(crate) stop: &'a Stop,
 }
 

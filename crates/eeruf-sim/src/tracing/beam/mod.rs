@@ -22,7 +22,7 @@ pub(super) use tree::BeamTree;
 pub(crate) struct Beam {
     /// The source, mirrored in every wall of the sequence.
     pub(crate) image: Point,
-    /// The limits of its cone.
+    /// The limits of the beam's cone.
     pub(super) left: Vector,
     pub(super) right: Vector,
     /// The last wall's side of the mesh, by which the beam enters.

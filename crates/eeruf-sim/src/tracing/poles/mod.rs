@@ -52,7 +52,7 @@ pub(crate) struct PoleQuery<'a> {
     pub(crate) asked: Asked,
     /// Largest number of beams and paths.
     pub(crate) budget: usize,
-    /// Switch that ends it early.
+    /// Switch that ends the search early.
     pub(crate) stop: &'a Stop,
 }
 

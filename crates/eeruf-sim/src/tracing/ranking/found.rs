@@ -23,7 +23,7 @@ pub(in crate::tracing) enum FoundPath<'a> {
 }
 
 impl FoundPath<'_> {
-    /// The number of its receiver.
+    /// The number of the path's receiver.
     pub(in crate::tracing) fn receiver(&self) -> u32 {
         match self {
             Self::Walls(image) => image.receiver,

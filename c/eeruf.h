@@ -148,7 +148,7 @@ typedef struct EerufSchedule {
     const uint32_t *gap_us; /* [phases][sensors + 1]: from each firing to the one before; from the last to the end */
     uint32_t period_us;     /* T_p */
     uint32_t min_refire_us; /* the shortest time between two firings of one sensor */
-    /* The requirements it was verified for: all zero if it was not. */
+    /* The requirements that were verified; all zero if none were. */
     uint32_t t_delta_us;    /* (13a) and (13b) hold for it; like the window, the largest of all sensors */
     uint32_t min_interval_us;
     uint32_t window_us;
@@ -193,10 +193,10 @@ enum {
 
 typedef struct EerufReading {
     uint32_t t_echo_us;   /* EERUF_NO_ECHO if there was none */
-    uint32_t previous_us; /* what it was compared with, or EERUF_NO_ECHO */
+    uint32_t previous_us; /* the echo time compared with, or EERUF_NO_ECHO */
     uint16_t age;         /* firings since the last accepted reading, or EERUF_NEVER */
     uint8_t kind;         /* EERUF_READING_.. */
-    uint8_t explained_by; /* why it is ambiguous: a sensor, or EERUF_BY_HISTORY; else EERUF_BY_NOTHING */
+    uint8_t explained_by; /* reason for ambiguity: a sensor, or EERUF_BY_HISTORY; else EERUF_BY_NOTHING */
 } EerufReading;
 
 /* One sensor's filter. Not for the caller. */
@@ -359,10 +359,10 @@ enum {
     EERUF_STATE_UNANSWERED = 4  /* the sensor does not answer, or its line is stuck */
 };
 enum {
-    EERUF_WHY_NO_FIRING = 0, /* it has not fired yet */
+    EERUF_WHY_NO_FIRING = 0, /* the sensor has not fired yet */
     EERUF_WHY_UNSURE = 1,    /* one echo, or one silence, that is not confirmed yet */
     EERUF_WHY_REJECTED = 2,  /* the last two echoes differ */
-    EERUF_WHY_AMBIGUOUS = 3, /* they agree, and sound of `explained_by` explains both */
+    EERUF_WHY_AMBIGUOUS = 3, /* readings agree, and sound of `explained_by` explains both */
     EERUF_WHY_NO_WITNESS = 4 /* silence again, which nothing confirms: it has not shown that it listens */
 };
 const char *eeruf_state_name(uint8_t kind); /* "clear"; not linked unless called */
@@ -420,7 +420,7 @@ uint32_t eeruf_distance_mm(uint32_t t_echo_us, uint32_t c_mm_s); /* c t / 2, to 
 /* ---- Edges: from an interrupt, which only time-stamps, to the main loop ---- */
 
 typedef struct EerufEdge {
-    uint32_t at_us;    /* when it was seen */
+    uint32_t at_us;    /* instant of detection */
     uint8_t sensor;    /* 0 to 127 */
     bool high;         /* true if the line rose */
     uint8_t early;     /* time by which it may have come sooner: units of 8 us to 127, then of 256; 255: any time */
@@ -447,7 +447,7 @@ EerufStatus eeruf_edges_pop(EerufEdges *edges, EerufEdge *edge);
 /* ---- HC-SR04 and relatives: a trigger, and an echo line that is high for as long as the echo took ---- */
 
 enum {
-    EERUF_HEALTH_WELL = 0,        /* its line answers, or it has not been asked often enough */
+    EERUF_HEALTH_WELL = 0,        /* the line answers, or has not been asked often enough */
     EERUF_HEALTH_MISSING = 1,     /* nothing comes from its line when it is triggered */
     EERUF_HEALTH_STUCK_HIGH = 2,  /* its line was high when it was to be triggered */
     EERUF_HEALTH_CHATTERS = 3,    /* several pulses followed one trigger */

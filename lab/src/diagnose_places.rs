@@ -17,7 +17,7 @@ use crate::driving::{Place, world};
 struct Counts {
     /// Readings caused by foreign sound.
     foreign: usize,
-    /// Pairs among them that are named with the right sender.
+    /// Pairs that are named with the right sender.
     right: usize,
     /// Readings called foreign.
     named: usize,

@@ -44,7 +44,7 @@ struct Shown {
     reference_us: Vec<f64>,
     /// One of `accepted`, `rejected`, `none` (nothing heard, believed or not), `first` (not yet compared).
     verdict: Vec<&'static str>,
-    /// True if it was believed and is off by more than the tolerance.
+    /// True if the reading was believed and is off by more than the tolerance.
     wrong: Vec<bool>,
     cause: Vec<Cause>,
     /// The path in `paths`; `null` for none.

@@ -76,7 +76,7 @@ pub(crate) struct Args {
     in_rooms: RoomArgs,
 }
 
-/// Every method with what it does, for the help.
+/// Every method with its description, for the help.
 fn every_method() -> String {
     let row = |method: Method| format!("\n  {:<19} {}", method.as_str(), method.about());
     let rows = |of: fn(&Method) -> bool| Method::ALL.into_iter().filter(of).map(row).collect::<String>();

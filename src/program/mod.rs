@@ -49,14 +49,14 @@ pub(crate) struct Program {
     pub(crate) next: &'static str,
 }
 
-/// A ring and how it is to fire.
+/// A ring and its way of firing.
 pub(crate) struct Wanted<'a> {
     /// The ring file's name and text.
     pub(crate) file: (&'a str, &'a str),
     pub(crate) design: &'a RingDesign,
     pub(crate) robot: &'a Robot,
     pub(crate) way: Way,
-    /// True if it should send MAVLink to an autopilot.
+    /// True if the program should send MAVLink to an autopilot.
     pub(crate) mavlink: bool,
     /// The name of the folder, for languages whose main file has the same name.
     pub(crate) name: &'a str,

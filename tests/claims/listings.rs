@@ -12,7 +12,7 @@ use crate::newcomers::shell;
 struct Listing {
     document: String,
     language: String,
-    /// The file that it is a part of.
+    /// The file to which the text belongs.
     source: Option<String>,
     text: String,
 }

@@ -298,7 +298,7 @@ impl Driver for InC {
 pub struct Said {
     /// The kind of reading, as [`ReadingKind`] counts.
     pub kind: u32,
-    /// The state after it, in the form of [`core_side::state`](state).
+    /// The state after the event, in the form of [`core_side::state`](state).
     pub state: [u32; 5],
     /// True if its line is healthy.
     pub is_well: bool,

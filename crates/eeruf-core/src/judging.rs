@@ -27,7 +27,7 @@ impl FiringContext {
 pub struct Heard<'r> {
     /// The sensor, from 0.
     pub sensor: u8,
-    /// Time when it fired.
+    /// Time of the firing.
     pub fired: Instant,
     /// Time since its firing before; meaningless if that was forgotten.
     pub since_before: Micros,
@@ -78,7 +78,7 @@ impl Age {
 pub enum Explained {
     /// No firing explains the readings.
     ByNothing,
-    /// This firing explains them, or a forgotten one may.
+    /// This firing explains the readings, or a forgotten one may.
     By(Explanation),
 }
 

@@ -65,14 +65,14 @@ pub enum RingError {
     },
     /// The plan fires more sensors than the ring has.
     Sensors {
-        /// Number of sensors it fires.
+        /// Number of sensors that the plan fires.
         sensors: usize,
         /// Sensors of the ring.
         capacity: usize,
     },
     /// The ring has room for more sensors than a schedule may have.
     Room {
-        /// The number of sensors it has room for.
+        /// The number of sensors for which there is room.
         capacity: usize,
     },
     /// The schedule was verified for a smaller `t_delta`.
@@ -123,9 +123,9 @@ pub enum RingError {
         name: &'static str,
         /// The value given.
         value: u32,
-        /// The least that it may be.
+        /// The least valid value.
         least: u32,
-        /// The most that it may be.
+        /// The greatest valid value.
         most: u32,
     },
 }

@@ -137,7 +137,7 @@ pub enum SurveyEvent {
     Row {
         /// The sensor, from 0.
         sensor: u8,
-        /// Time when it fired.
+        /// Time of the firing.
         fired: Instant,
         /// The slot: the log's `period`.
         slot: u32,
@@ -151,7 +151,7 @@ pub enum SurveyEvent {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 struct Listener {
     sensor: u8,
-    /// Time when it fires; after that, the time when its window ends.
+    /// Time of the firing; after that, the time when its window ends.
     due: Instant,
     fired: Option<Instant>,
     t_echo: Option<Micros>,

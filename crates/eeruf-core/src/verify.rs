@@ -221,7 +221,7 @@ pub struct Violation {
     pub kind: ViolationKind,
     /// The sensors concerned, from 0; the same twice if there is only one.
     pub sensors: (u8, u8),
-    /// The phases in which they fire; for crosstalk and stale echoes both `a`.
+    /// The phases of the firings; for crosstalk and stale echoes both `a`.
     pub phases: (Phase, Phase),
     /// The time found.
     pub value: Micros,

@@ -55,7 +55,7 @@ pub enum SensorState {
     Obstacle {
         /// The echo time.
         t_echo: Micros,
-        /// Time since it was last confirmed.
+        /// Time since the last confirmation.
         age: Micros,
     },
     /// Nothing is in range, by silence that is confirmed. Any echo ends it.
@@ -65,12 +65,12 @@ pub enum SensorState {
     },
     /// Something is closer than the sensor can measure.
     TooClose {
-        /// Time since it was last seen.
+        /// Time since the object was last seen.
         age: Micros,
     },
     /// The sensor does not answer, or its line is stuck.
     Unanswered {
-        /// Time for which it has not answered.
+        /// Time without an answer.
         since: Micros,
     },
     /// Nothing is known.

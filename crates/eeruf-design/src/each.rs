@@ -28,7 +28,7 @@ impl<T: Copy> Each<T> {
         }
     }
 
-    /// Returns true if it is a list.
+    /// Returns true if the value is a list.
     pub(crate) fn is_list(&self) -> bool {
         matches!(self, Self::Of(_))
     }

@@ -37,7 +37,7 @@ pub struct RingDesign {
     pub bounding: RingSpec,
     /// The bound on the period of every schedule for `bounding`: what a certificate can state.
     pub bound: Option<Micros>,
-    /// Reason why it is not shorter, in words.
+    /// Reason why the period is not shorter, in words.
     pub reason: String,
     /// Slack of the schedule, if the period is proven: no other schedule with this period has more.
     pub to_spare: Option<ToSpare>,
@@ -45,7 +45,7 @@ pub struct RingDesign {
     pub from_atlas: bool,
     /// Bound of the period by the certificate of the atlas's row; see [`certified`](Self::certified).
     pub(crate) known_certified: Option<Micros>,
-    /// Changes that would shorten it, if they were asked for.
+    /// Changes that would shorten the period, if they were asked for.
     pub what_if: Vec<WhatIf>,
 }
 

@@ -230,7 +230,7 @@ fn name_of(judgement: &Judgement) -> Option<&'static str> {
 pub struct RoomsJson<'a> {
     /// The name of the way to recommend.
     pub recommended: Option<&'static str>,
-    /// True if it keeps to the limits in each kind of room.
+    /// True if the way keeps to the limits in each kind of room.
     pub keeps: bool,
     /// Assumptions about values that the ring file does not give.
     pub assumed: &'a [String],

@@ -35,7 +35,7 @@ pub struct FoundPeriod {
     pub found: Found<MAX_SENSORS>,
     /// The schedule to prefer.
     pub schedule: AnySchedule,
-    /// Reason why it is not shorter, in words.
+    /// Reason why the period is not shorter, in words.
     pub reason: String,
     /// Slack of that schedule, if the period is proven: no other schedule with this period has more.
     pub to_spare: Option<ToSpare>,

@@ -14,7 +14,7 @@ const WHAT_IF_BUDGET: u64 = 20_000;
 pub struct WhatIf {
     /// The relaxed need, in words.
     pub need: String,
-    /// The shortest period with it, or the shortest found.
+    /// The shortest period with this change, or the shortest found.
     pub period: Option<Micros>,
     /// True if no schedule with it is shorter.
     pub proven: bool,

@@ -118,7 +118,7 @@ impl embedded_hal_async::delay::DelayNs for Delay {
     }
 }
 
-/// Runs a task until it is done, or returns `None` at this time.
+/// Runs a task to its end, or returns `None` at this time.
 fn run<F: Future>(world: &Rc<RefCell<World>>, until_us: u32, task: F) -> Option<F::Output> {
     let mut task = pin!(task);
     loop {

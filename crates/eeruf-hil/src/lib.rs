@@ -218,7 +218,7 @@ impl Record {
         Topic::ALL.get(usize::from(self.0[0] as u8)).copied()
     }
 
-    /// The sensor it concerns.
+    /// The sensor of the record.
     pub const fn sensor(self) -> u8 {
         (self.0[0] >> 8) as u8
     }

@@ -30,7 +30,7 @@ use eeruf_files::{FIRING_COLUMNS, firing_row};
 pub struct Firing {
     /// The sensor, from 0.
     pub sensor: u8,
-    /// Time when it fired, in microseconds of the log's clock.
+    /// Time of the firing, in microseconds of the log's clock.
     pub fired_us: i64,
     /// The period, from 0.
     pub period: u32,

@@ -17,7 +17,7 @@ use crate::firings::{Firing, FiringLog};
 pub struct FlowSettings {
     /// The time for which sensors listen.
     pub window: Micros,
-    /// The time for which they are deaf after they have fired.
+    /// The time for which sensors are deaf after firing.
     pub blanking: Micros,
     /// R: how long sound is heard, its tail included.
     pub audible: Micros,

@@ -17,7 +17,7 @@ use eeruf_files::FileError;
 #[derive(Default)]
 struct Metadata {
     files: Vec<PathBuf>,
-    /// Number of messages they have.
+    /// Number of messages on these topics.
     messages: u64,
     /// True if each message is compressed by itself.
     packed: bool,

@@ -36,7 +36,7 @@ pub struct Guess {
     pub what: String,
     /// The guessed value, and the basis of the guess.
     pub value: String,
-    /// The options that override it.
+    /// The options that override the guess.
     pub option: String,
 }
 

@@ -42,6 +42,6 @@ pub struct Finding {
     pub sensor: usize,
     /// The symptom.
     pub symptom: Symptom,
-    /// The evidence for it, with figures.
+    /// The evidence for the symptom, with figures.
     pub said: String,
 }

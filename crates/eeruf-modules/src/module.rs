@@ -8,11 +8,11 @@ pub(crate) const CLONE_HOLDS_US: u32 = 200_000;
 pub struct Module {
     /// The name in files: that of a preset, or of the one that it differs from.
     pub name: &'static str,
-    /// The farthest range that it reports, in mm.
+    /// The farthest range that the module reports, in mm.
     pub sees_to_mm: u32,
     /// Distance of the farthest wall whose echo is still heard now and then, in mm.
     pub hears_to_mm: u32,
-    /// Time for which it is deaf after firing, in us.
+    /// Time for which the module is deaf after firing, in us.
     pub blanking_us: u32,
     /// Frequency in Hz.
     pub frequency_hz: u32,
@@ -32,7 +32,7 @@ pub struct Module {
     pub rest_us: u32,
     /// The length of the trigger pulse, in us; 0 for a command, a level, or a module that runs freely.
     pub trigger_us: u32,
-    /// The way in which it reports.
+    /// The way in which the module reports.
     pub interface: Interface,
     /// The time from the trigger to its report, in us; 0 where the echo's own edge reports it.
     pub report_us: u32,

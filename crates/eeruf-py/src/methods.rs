@@ -128,7 +128,7 @@ impl Method {
         Ok(Self { entry, makers, schedule: kept(schedule), settings: kept(settings), sketch: kept(sketch) })
     }
 
-    /// The method that it is based on, one of ``METHODS``.
+    /// The method on which this one is based, one of ``METHODS``.
     #[getter]
     fn name(&self) -> &'static str {
         self.entry.method().as_str()

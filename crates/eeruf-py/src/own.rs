@@ -41,7 +41,7 @@ pub(crate) struct FiredReading {
     reading: Reading,
     t_echoes_us: Vec<u32>,
     levels_db: Vec<f32>,
-    /// Time when it fired, in seconds.
+    /// Time of the firing, in seconds.
     #[pyo3(get)]
     fired_s: f64,
     /// Change of a good reading, since the sensor's previous firing, that odometry expects, in microseconds.
@@ -145,7 +145,7 @@ fn keep(raised: &Raised, error: PyErr) -> OwnError {
 }
 
 impl Calls {
-    /// Calls one of them, and keeps its exception.
+    /// Calls one of the callables, and keeps its exception.
     fn call<T>(&self, index: usize, ask: impl FnOnce(&Bound<'_, PyAny>) -> PyResult<T>) -> Result<T, OwnError> {
         Python::attach(|py| {
             let callable = locked(&self.callables[index]).as_ref().map(|callable| callable.clone_ref(py));

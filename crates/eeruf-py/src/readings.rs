@@ -82,7 +82,7 @@ impl Readings {
         self.columns.get(py, 1, self.readings.sensor.iter().map(|&sensor| i64::from(sensor)))
     }
 
-    /// The period in which it fired, from 0: int64.
+    /// The period of the firing, from 0: int64.
     #[getter]
     fn period<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.columns.get(py, 2, self.readings.period.iter().map(|&period| i64::from(period)))
@@ -94,7 +94,7 @@ impl Readings {
         self.columns.get(py, 3, self.readings.phase.iter().map(|&phase| i64::from(phase)))
     }
 
-    /// Time when it fired, in seconds: float64.
+    /// Time of the firing, in seconds: float64.
     #[getter]
     fn fired_s<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.columns.get(py, 4, self.readings.fired_s.iter().copied())

@@ -57,7 +57,7 @@ impl Schedule {
         PyTuple::new(py, (0..self.0.sensors()).map(fire))
     }
 
-    /// The needs for which it is checked.
+    /// The needs of the check.
     fn asked<'py>(
         py: Python<'py>,
         call: &str,

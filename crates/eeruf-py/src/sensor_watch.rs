@@ -66,7 +66,7 @@ impl SensorWatch {
         Ok(Self { watch: Exclusive::new("SensorWatch", watch), sensors, blind_after })
     }
 
-    /// Number of sensors it watches.
+    /// Number of sensors watched.
     #[getter]
     fn sensors(&self) -> u8 {
         self.sensors

@@ -73,7 +73,7 @@ pub(crate) struct Simulation {
     stepping: Mutex<Option<ThreadId>>,
     asked: Mutex<Asked>,
     calls: Mutex<Arc<Calls>>,
-    /// The arguments that make it again, and the calls since then.
+    /// The arguments that recreate the object, and the calls since then.
     made_of: Option<(Py<Scene>, Py<PyAny>)>,
     history: Mutex<History>,
 }

@@ -61,7 +61,7 @@ fn polar(at: At, metres: f64) -> [f64; 2] {
     [at[0] + metres * at[2].cos(), at[1] + metres * at[2].sin()]
 }
 
-/// The distance from here and the angle from straight ahead.
+/// The distance from `at` and the angle from straight ahead.
 fn bearing(at: At, [x, y]: [f64; 2]) -> (f64, f64) {
     let (dx, dy) = (x - at[0], y - at[1]);
     let angle = dy.atan2(dx) - at[2];

@@ -60,7 +60,7 @@ impl Scale {
 }
 
 impl Distance {
-    /// Returns the number for it in a `Range`.
+    /// Returns the number for this distance in a `Range`.
     pub(crate) fn number(self) -> f32 {
         match self {
             Self::At(metres) => metres,

@@ -30,7 +30,7 @@ pub(crate) fn placing(world: &World, height_m: f64) -> Placing {
 /// A reading of the simulation.
 pub(crate) struct Simulated {
     pub(crate) firing: FiringMessage,
-    /// Time when it fired, by the host's clock.
+    /// Time of the firing, by the host's clock.
     pub(crate) fired_ns: i64,
     /// The echo time of a sensor that fires alone; none if nothing is in range.
     pub(crate) truth: Option<Micros>,

@@ -5,13 +5,13 @@ use eeruf_core::{Instant, Micros, Reading, ReadingKind, judge::Explanation};
 pub struct FiringMessage {
     /// The sensor, from 0.
     pub sensor: u8,
-    /// The phase it fired in, from 0.
+    /// The phase of the firing, from 0.
     pub phase: u8,
     /// The outcome: accepted, or why not.
     pub kind: ReadingKind,
-    /// Time when it fired, by the board's clock, which wraps after 2^32 us.
+    /// Time of the firing, by the board's clock, which wraps after 2^32 us.
     pub fired: Instant,
-    /// The period it fired in, from 0.
+    /// The period of the firing, from 0.
     pub period: u32,
     /// The raw time from firing to the first echo; `None` without echo.
     pub t_echo: Option<Micros>,

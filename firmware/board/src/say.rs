@@ -5,7 +5,7 @@ use core::panic::PanicInfo;
 
 /// A value that can be written on one line.
 pub trait Say {
-    /// Writes it.
+    /// Writes the value.
     fn say(&self);
 }
 

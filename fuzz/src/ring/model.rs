@@ -19,7 +19,7 @@ const STAMPS: u64 = 64;
 pub(super) struct Heard {
     /// The echo; `Some(None)` for silence, `None` if unknown.
     echo: Option<Option<u32>>,
-    /// Time when it fired.
+    /// Time of the firing.
     fired: u64,
     t_delta: u32,
     /// True if foreign sound explains it together with the one before.
@@ -135,7 +135,7 @@ pub(crate) struct Sensor {
     /// True if the sensor held its line then and still does.
     pub(crate) is_held: bool,
     pub(super) last_fired: Option<Last>,
-    /// All instants at which it fired.
+    /// All instants of firings.
     pub(crate) fired: Vec<u64>,
     /// The earlier readings that count, newest last.
     pub(super) heard: Vec<Heard>,
@@ -198,7 +198,7 @@ pub(super) fn always_kept(schedule: &Schedule<SENSORS>, x: usize, y: usize) -> u
 }
 
 impl Sensor {
-    /// Returns true if it has fired and nothing was reported since.
+    /// Returns true if the sensor has fired and nothing was reported since.
     pub(crate) fn is_silent(&self) -> bool {
         self.open.as_ref().is_some_and(|open| open.echoes.is_empty() && open.early.is_none())
     }

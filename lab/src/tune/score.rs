@@ -17,7 +17,7 @@ pub(crate) const ROUNDS: [Round; 3] =
 pub(crate) struct Score {
     /// Number of courses that it finished alone, with a second robot behind, and with one ahead.
     pub(crate) finished: [u32; 3],
-    /// Time for which it drove on those that it finished, in seconds.
+    /// Time of driving on finished courses, in seconds.
     pub(crate) time_s: f64,
 }
 

@@ -26,7 +26,7 @@ const SVG_TEXT_DROP: f64 = 0.129;
 
 /// Pixels of a PNG per pixel of the picture.
 const DENSITY: usize = 2;
-/// Ratio in which it is drawn larger than the PNG.
+/// Ratio in which a picture is drawn larger than the PNG.
 const OVERSAMPLING: usize = 2;
 
 /// A picture not yet tied to a file format.

@@ -14,7 +14,7 @@ pub(crate) struct DrawnPath {
     pub(crate) emitter: usize,
     /// From the emitter over all bounces to the receiver.
     pub(crate) corners: Vec<Point>,
-    /// Number of readings it spoilt.
+    /// Number of readings that the path spoilt.
     pub(crate) times: usize,
 }
 

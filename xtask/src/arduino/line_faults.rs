@@ -112,7 +112,8 @@ fn least_distances(said: &str, modules: impl IntoIterator<Item = usize>) -> usiz
     modules.into_iter().map(distances).min().unwrap_or(0)
 }
 
-/// Returns a sketch's words about modules, one of which has a fault, each before a wall of its own at this echo time.
+/// Returns a sketch's output about modules of which one has a fault; each stands before its own wall, at this echo
+/// time.
 fn with_fault(
     world: &Path,
     elf: &Path,

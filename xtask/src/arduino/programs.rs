@@ -24,7 +24,7 @@ pub(crate) struct Drawn {
     /// table in docs/log/arduino.md; by default none
     #[arg(long, value_name = "N", default_value_t = 0)]
     combinations: usize,
-    /// The seed that they are drawn by
+    /// The seed of the draws
     #[arg(long, default_value_t = 1)]
     seed: u64,
 }

@@ -19,11 +19,11 @@ const OLD: Micros = Micros::new(1 << 29);
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 struct Slot {
-    /// Time when it last fired, if it has.
+    /// Time of the last firing, if any.
     fired: Instant,
-    /// Quiet that it needs before and after its firing, in units.
+    /// Quiet that the sensor needs before and after its firing, in units.
     doubt: u16,
-    /// The sensor after it in the order, or [`NOBODY`].
+    /// The next sensor in the order, or [`NOBODY`].
     then: u8,
     flags: u8,
 }
@@ -35,7 +35,7 @@ const LISTENS: u8 = 2;
 const DISABLED: u8 = 4;
 /// The sensor fires together with one that has a turn.
 const FOLLOWS: u8 = 8;
-/// The leader of its group has fired, and it has not yet.
+/// The sensor has not fired yet, but its group's leader has.
 const PENDING: u8 = 16;
 
 impl Slot {
@@ -61,7 +61,7 @@ pub struct InTurn<const K: usize, U = ()> {
     next: u8,
     /// The first sensor, in the order, whose turn is still to come; [`NOBODY`] if the round ends.
     from: u8,
-    /// The sensor whose turn it is, or [`NOBODY`].
+    /// The sensor with the turn, or [`NOBODY`].
     turn: u8,
     /// The sensor that has fired in this round before its turn, or [`NOBODY`].
     ahead: u8,

@@ -96,10 +96,10 @@ pub fn check_plan<P: Plan>(plan: &mut P, now: Instant, polls: u32, seed: u32) ->
 #[derive(Clone, Copy, Default)]
 struct Seen {
     fired: Option<Instant>,
-    /// Time when it stops listening; `None` if it has stopped.
+    /// Time when the sensor stops listening; `None` if it has stopped.
     ends: Option<Instant>,
     disabled: bool,
-    /// Time since when it could have fired.
+    /// Time since when the sensor could have fired.
     waits_since: Option<Instant>,
 }
 

@@ -16,7 +16,7 @@ pub struct Upcoming {
     pub sensor: u8,
     /// The phase its wait belongs to.
     pub phase: Phase,
-    /// Time when it is due.
+    /// Time when the firing is due.
     pub due: Instant,
 }
 

@@ -12,9 +12,9 @@ pub enum RingEvent {
     Fire {
         /// The sensor, from 0.
         sensor: u8,
-        /// The phase that its wait belongs to.
+        /// The phase of the firing's wait.
         phase: Phase,
-        /// Time when it was due: in the past if the poll was late.
+        /// Time when the firing was due: in the past if the poll was late.
         due: Instant,
     },
     /// The outcome of an earlier firing.
@@ -30,7 +30,7 @@ pub enum RingEvent {
 pub struct Reading {
     /// The sensor, from 0.
     pub sensor: u8,
-    /// The phase in which it fired.
+    /// The phase of the firing.
     pub phase: Phase,
     /// The period in which it fired, counted from 0; valid if that was fewer than eight periods ago.
     pub period: u32,
@@ -38,7 +38,7 @@ pub struct Reading {
     pub kind: ReadingKind,
     /// The echo time; `None` without echo.
     pub t_echo: Option<Micros>,
-    /// The echo time that it was compared with.
+    /// The echo time compared with.
     pub previous: Option<Micros>,
     /// Number of firings since this sensor's last accepted reading; `None` if none ever was.
     pub age: Option<u16>,

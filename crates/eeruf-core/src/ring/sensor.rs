@@ -61,7 +61,7 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
         Self { firings: Firings::none_before(now), echoes: [NO_ECHO; E], flags: OUTSIDE, uncertain: [0; 3] }
     }
 
-    /// Returns the time when it last fired.
+    /// Returns the time of the last firing.
     #[inline]
     pub(super) const fn fired(&self) -> Instant {
         self.firings.last()
@@ -99,7 +99,7 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
         is_out && evidence == HELD
     }
 
-    /// Number of periods since it fired, if fewer than eight.
+    /// Number of periods since the firing, if fewer than eight.
     pub(super) const fn periods_ago(&self, period: u32) -> u8 {
         (period as u8).wrapping_sub(self.flags) & PERIOD
     }

@@ -28,7 +28,7 @@ pub enum ScheduleError {
     Waits {
         /// The phase.
         phase: Phase,
-        /// Number of waits it has.
+        /// Number of waits in the phase.
         waits: usize,
         /// Number of sensors.
         sensors: usize,
@@ -69,7 +69,7 @@ pub enum ScheduleError {
     RungSensors {
         /// The rung.
         rung: usize,
-        /// Number of sensors it has.
+        /// Number of sensors of the rung.
         sensors: usize,
         /// Number of sensors of the first rung.
         expected: usize,

@@ -69,7 +69,7 @@ pub enum SearchError {
     CoarseTick {
         /// The tick.
         tick: Micros,
-        /// The time that it takes, in microseconds.
+        /// The time of firing one by one, in microseconds.
         period_us: u64,
     },
     /// The memory that the caller lent is too small.

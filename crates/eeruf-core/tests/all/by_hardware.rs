@@ -1,4 +1,4 @@
-//! Rings whose triggers hardware gives at the instants of [`Ring::upcoming`], and whose echoes it reports by value.
+//! Rings whose hardware triggers at the instants of [`Ring::upcoming`] and reports echoes by value.
 
 use eeruf_core::{
     Instant, Micros, ReadingKind, Ring, RingConfig, RingError, RingEvent, ScheduledRing, SensorError, Silence,

@@ -45,7 +45,7 @@ enum Fault {
 struct Faulty {
     inner: ScheduledFiring<'static, 12>,
     fault: Fault,
-    /// Sensors that it reports as disabled.
+    /// Sensors reported as disabled by the ring.
     disabled: [bool; 12],
 }
 

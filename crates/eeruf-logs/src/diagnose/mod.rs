@@ -108,7 +108,7 @@ pub struct FoundPath {
     /// Number of paths with as much support that are expected by accident in the whole log. For a path that moves, the
     /// probability that the surest of its readings did not come along it.
     pub accidents: f64,
-    /// Readings that came along it.
+    /// Readings along the path.
     pub readings: u32,
     /// The share of readings that heard the path, among those in which nothing earlier hid it.
     pub heard: f64,

@@ -75,9 +75,9 @@ pub struct Examination {
 pub struct Suspect {
     /// The sensor that may be fooled, from 0.
     pub sensor: usize,
-    /// The sensor whose sound it may read, if known.
+    /// The sensor whose sound this one may read, if known.
     pub by: Option<usize>,
-    /// The evidence for it.
+    /// The evidence for the suspicion.
     pub reason: String,
     /// The test that decides the suspicion.
     pub test: String,

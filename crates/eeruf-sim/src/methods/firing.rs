@@ -192,7 +192,7 @@ impl PeriodFiring {
         firing
     }
 
-    /// Returns the reason why it no longer fires, if it does not.
+    /// Returns the reason why the plan no longer fires, if it does not.
     pub(crate) fn error(&self) -> Option<&OwnError> {
         self.planner.0.as_ref().err()
     }

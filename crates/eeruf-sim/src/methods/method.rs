@@ -20,12 +20,12 @@ pub(super) struct MethodRow {
     pub(super) name: &'static str,
     /// The description, from the enum's documentation.
     pub(super) about: &'static str,
-    /// True if it is simulated only on request.
+    /// True if the method is simulated only on request.
     pub(super) on_demand: bool,
     pub(super) firing: Way,
     pub(super) judge: JudgeKind,
     pub(super) echoes: usize,
-    /// True if it moves along a ladder of scaled schedules.
+    /// True if the method moves along a ladder of scaled schedules.
     pub(super) adapts: bool,
 }
 

@@ -36,7 +36,7 @@ pub(crate) trait RingRunner: Send {
     fn change_schedule(&mut self, _schedule: &AnySchedule) -> Result<(), ChangeError> {
         Err(ChangeError::Fixed)
     }
-    /// Returns the reason why it no longer fires, if it does not.
+    /// Returns the reason why the ring no longer fires, if it does not.
     fn error(&self) -> Option<&OwnError> {
         None
     }

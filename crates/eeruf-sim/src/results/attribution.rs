@@ -14,7 +14,7 @@ pub struct Attribution {
     pub receiver: SensorId,
     /// Cause of the error. With [`Cause::Nothing`] it heard nothing where it should have.
     pub cause: Cause,
-    /// Sensor that caused it, if there is one.
+    /// Sensor that caused the wrong readings, if there is one.
     pub emitter: Option<SensorId>,
     /// Index into [`Readings::paths`], or [`NO_PATH`].
     pub path: u32,

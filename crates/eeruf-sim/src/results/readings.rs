@@ -39,9 +39,9 @@ pub const NO_PATH: u32 = u32::MAX;
 /// A path along which sound reached a sensor.
 #[derive(Clone, Debug, PartialEq)]
 pub struct HeardPath {
-    /// The sensor that sent it.
+    /// The sensor that sent the sound.
     pub emitter: SensorId,
-    /// The sensor that heard it.
+    /// The sensor that heard the sound.
     pub receiver: SensorId,
     /// Number of bounces.
     pub order: u32,
@@ -77,9 +77,9 @@ pub struct Readings {
     pub sensor: Vec<u8>,
     /// The period of the robot's ring in which it fired, from 0.
     pub period: Vec<u32>,
-    /// The phase in which it fired, from 0.
+    /// The phase of the firing, from 0.
     pub phase: Vec<u8>,
-    /// Time when it fired, in seconds of true time.
+    /// Time of the firing, in seconds of true time.
     pub fired_s: Vec<f64>,
     /// Position of the sensor when it fired, in metres of the scene.
     pub x_m: Vec<f64>,

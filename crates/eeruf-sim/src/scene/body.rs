@@ -123,7 +123,7 @@ impl Body {
         }
     }
 
-    /// Returns true if it overlaps another body.
+    /// Returns true if the body overlaps another one.
     pub fn overlaps(&self, pose: &Pose, other: &Self, there: &Pose) -> bool {
         self.with_shape(|shape| other.with_shape(|other| meets(&placed(pose), shape, &placed(there), other)))
     }

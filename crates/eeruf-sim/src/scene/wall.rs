@@ -61,7 +61,7 @@ impl Wall {
         corners.windows(2).map(|pair| Self::new(pair[0][0], pair[0][1], pair[1][0], pair[1][1]))
     }
 
-    /// Returns true if it is an opening.
+    /// Returns true if the wall is an opening.
     pub fn is_open(&self) -> bool {
         self.faces == Faces::Open
     }

@@ -92,7 +92,7 @@ impl Entry {
         &self.name
     }
 
-    /// The method on which it is based.
+    /// The method on which this one is based.
     pub const fn method(&self) -> Method {
         self.method
     }

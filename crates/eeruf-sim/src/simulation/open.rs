@@ -39,7 +39,7 @@ const MAX_STEP_S: f64 = 1e9;
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub struct Simulation {
-    /// The world as it was at first.
+    /// The world at the beginning.
     world: Arc<World>,
     events: EventLoop<Steered>,
     method: Method,

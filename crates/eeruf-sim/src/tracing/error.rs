@@ -29,7 +29,7 @@ pub enum PathsError {
     Inside {
         /// The position in metres.
         at: [f64; 2],
-        /// The object around it.
+        /// The object around the position.
         what: Contact,
     },
     /// A source or a receiver is not between floor and ceiling.

@@ -24,7 +24,7 @@ pub enum WorldError {
     Sensors {
         /// The robot.
         robot: usize,
-        /// Number of sensors it has.
+        /// Number of sensors of the robot.
         sensors: usize,
     },
     /// An invalid number.
@@ -71,7 +71,7 @@ pub enum WorldError {
     Contact {
         /// The robot.
         robot: usize,
-        /// The object that it touches.
+        /// The object that the robot touches.
         contact: Contact,
         /// The radius in metres of the disc that it takes up if it has no body.
         disc_m: Option<f64>,
@@ -82,12 +82,12 @@ pub enum WorldError {
         robot: usize,
         /// The sensor.
         sensor: usize,
-        /// The object around it.
+        /// The object around the sensor.
         contact: Contact,
     },
     /// A sensor that starts inside another robot's body.
     SensorInside {
-        /// The robot whose sensor it is.
+        /// The sensor's robot.
         robot: usize,
         /// The sensor.
         sensor: usize,

@@ -88,7 +88,7 @@ pub enum FaultKind {
     },
     /// The line is low for a moment while it should be high.
     GlitchLow {
-        /// Time after it rose, in us.
+        /// Time after the rise, in us.
         after_us: u32,
         /// Duration, in us.
         width_us: u32,
@@ -117,7 +117,7 @@ pub enum FaultKind {
         length_m: f64,
         /// The door's direction before the fault, in degrees counter-clockwise from the x axis.
         from_deg: f64,
-        /// The door's direction after it, in degrees.
+        /// The door's direction after the fault, in degrees.
         to_deg: f64,
     },
 }

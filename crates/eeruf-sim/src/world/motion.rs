@@ -29,7 +29,7 @@ pub enum Motion {
 }
 
 impl Motion {
-    /// Returns true if it never moves.
+    /// Returns true if the robot never moves.
     pub fn is_still(&self) -> bool {
         match self {
             Self::Still => true,

@@ -6,7 +6,7 @@ use eeruf_core::Reading;
 /// Firings and sounds of one sensor.
 #[derive(Clone, Default)]
 struct Sensor {
-    /// All instants at which it fired, in true time.
+    /// All instants of firings, in true time.
     fired: Vec<u64>,
     /// The last reading with an echo: the firing and when the echo was heard.
     last: Option<(u64, u64)>,

@@ -25,7 +25,7 @@ const FACTORIALS: u32 = 128;
 enum Meets {
     Heard,
     Missed,
-    /// Something earlier hid it.
+    /// An earlier echo hid the sound.
     Hidden,
 }
 

@@ -108,7 +108,7 @@ impl Prior {
         self.counts[time][bin.min(BINS - 1)] += weight;
     }
 
-    /// Shares of what was counted.
+    /// Turns counts into shares.
     pub(super) fn normalized(mut self) -> Self {
         self.none /= self.readings;
         for sources in self.sources.chunks_mut(self.sensors + 1) {

@@ -27,7 +27,7 @@ const BLIND: f64 = 0.05;
 pub struct Sight {
     /// Time from the thing's appearance to the first belief in it, in ms; infinite for never, NaN without a thing.
     pub latency_ms: f64,
-    /// False stops before it appeared.
+    /// False stops before the thing appeared.
     pub false_stops: u32,
     /// The time over which false stops were counted, in seconds.
     pub watched_s: f64,

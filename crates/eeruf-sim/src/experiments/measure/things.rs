@@ -44,12 +44,12 @@ impl ThingKind {
     pub const ALL: [Self; 5] = [Self::Leg, Self::Chair, Self::WallEnd, Self::Panel, Self::Person];
 }
 
-/// A thing where it appears.
+/// A thing at the place of its appearance.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Thing {
     /// The kind.
     pub kind: ThingKind,
-    /// The sensor before which it was drawn.
+    /// The sensor before which the thing was drawn.
     pub sensor: usize,
     /// The distance of the thing's nearest point from the sensor, in metres.
     pub distance_m: f64,

@@ -49,7 +49,7 @@ impl fmt::Display for Setting {
 /// A belief that begins with one reading.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Believed {
-    /// The reading that completed it.
+    /// The reading that completed the belief.
     pub(super) heard: Heard,
     /// The echo time; NaN for silence.
     pub(super) t_echo_us: f64,

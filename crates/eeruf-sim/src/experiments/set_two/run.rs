@@ -47,7 +47,7 @@ pub struct Run {
     pub course: u64,
     /// The end.
     pub ending: Ending,
-    /// Time for which it drove, in seconds.
+    /// Time of driving, in seconds.
     pub time_s: f64,
     /// Distance driven, in metres.
     pub way_m: f64,

@@ -65,7 +65,7 @@ impl Default for Vfh {
 pub struct Valley {
     /// The first sector.
     pub first: usize,
-    /// Number of sectors it has; [`SECTORS`] if nothing is near.
+    /// Number of sectors of the valley; [`SECTORS`] if nothing is near.
     pub sectors: usize,
 }
 

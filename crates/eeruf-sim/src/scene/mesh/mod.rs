@@ -27,7 +27,7 @@ pub(crate) enum Beyond {
     Gate(u32),
     /// A wall; the reflected beam enters by this gate.
     Wall(u32),
-    /// Nothing returns from here.
+    /// No sound returns from here.
     Swallow,
 }
 

@@ -54,7 +54,7 @@ pub struct FiredReading<'a> {
     /// The echoes, earliest first: one at most, but up to eight under methods of several, such as
     /// [`Method::MultiEcho`](crate::Method::MultiEcho).
     pub echoes: &'a [Echo],
-    /// Time when it fired, in seconds of true time.
+    /// Time of the firing, in seconds of true time.
     pub fired_s: f64,
     /// Change that odometry expects of a good reading since the sensor's previous firing, in microseconds; 0 for a
     /// robot without odometry.

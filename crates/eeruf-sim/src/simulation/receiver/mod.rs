@@ -29,7 +29,7 @@ pub(crate) struct Arrival {
     pub(crate) onset: u64,
     /// Time when it is heard: at its onset, or later if its receiver needs time.
     pub(crate) at: u64,
-    /// Time when it was sent.
+    /// Time when the sound was sent.
     pub(crate) sent: u64,
     /// Path of the sound, or [`EXTERNAL`].
     pub(crate) path: u32,
@@ -156,11 +156,11 @@ pub(crate) struct Receiver {
     until: u64,
     /// Time up to which arrivals matter only to the present firing.
     own_until: u64,
-    /// Time when it last fired.
+    /// Time of the last firing.
     pub(crate) fired: u64,
     /// Number of the sensor's firings.
     pub(crate) firings: u32,
-    /// The next arrival that it will hear.
+    /// The next arrival that the receiver will hear.
     next: Option<Arrival>,
     /// Arrivals to come, in no order.
     pending: Vec<Arrival>,
@@ -305,7 +305,7 @@ impl Receiver {
         }
     }
 
-    /// Echoes since it fired, earliest first.
+    /// Echoes since the last firing, earliest first.
     pub(crate) fn heard(&self) -> &[Echo] {
         self.heard.get(..self.heard_count).unwrap_or(&[])
     }

@@ -271,8 +271,7 @@ fn envelope(piston: &Piston, in_room: bool) -> Vec<f64> {
     envelope
 }
 
-/// The cosine of the least angle off an axis at which a point of a circle lies, with the circle's centre at `out` from
-/// here.
+/// The cosine of the least angle off an axis at which a point of a circle lies, for a circle whose centre is at `out`.
 #[inline]
 fn nearest_cos(out: Vector, far_m: f64, radius_m: f64, axis: Vector) -> f64 {
     let (cos, sin_half) = (out.dot(&axis) / far_m, radius_m / far_m);

@@ -37,7 +37,7 @@ struct Flight<'a> {
     beam: &'a Beam,
     /// The beam's number in the tree.
     index: u32,
-    /// True if walls reflect it, as they do except for the last order.
+    /// True if walls reflect the beam, as they do except for the last order.
     reflects: bool,
 }
 

@@ -337,7 +337,7 @@ impl<'p, 'm> Feasibility<'p, 'm> {
 enum Applied {
     /// The alternative stands.
     Done,
-    /// Another alternative covers it.
+    /// Another alternative covers this one.
     Skip,
     /// No alternative has that number.
     None,

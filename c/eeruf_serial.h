@@ -92,7 +92,7 @@ static inline size_t eeruf_serial_event(EerufSerial *line, const EerufRing *ring
         const uint32_t late_us = now_us - event->u.due_us;
         const char *letter = line->clock;
         if (event->sensor < line->sensors) line->late_us[event->sensor] = (uint16_t)(late_us > 65535 ? 65535 : late_us);
-        /* Greets now and then, for those who come late. */
+        /* Greets now and then, for late listeners. */
         if (line->firings++ % 128 != 0) return 0;
         frame = eeruf_frame_begin(line, 0, bytes);
         eeruf_frame_put(&frame, line->sensors, 1);

@@ -50,7 +50,7 @@ struct Figures {
     echoes: f64,
     /// The median of the distances; `None` without an echo.
     median_mm: Option<f64>,
-    /// Share of the echoes that are more than 5 cm from it.
+    /// Share of the echoes that are more than 5 cm from the median.
     off: f64,
 }
 

@@ -36,7 +36,7 @@ const ESP32_ECHOES: [u8; 9] = [25, 26, 27, 32, 33, 34, 35, 36, 39];
 const PI: [u8; 20] = [4, 5, 6, 12, 13, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 7, 8, 9];
 
 impl Board {
-    /// Returns true if its pins tolerate no more than 3.3 V.
+    /// Returns true if the board's pins tolerate no more than 3.3 V.
     pub(crate) const fn has_3v3(self) -> bool {
         !matches!(self, Self::Uno | Self::Mega)
     }

@@ -30,7 +30,7 @@ pub(crate) enum Language {
 }
 
 impl Language {
-    /// Returns the boards for it, the usual one first; none if any will do.
+    /// Returns the boards for the language, the usual one first; none if any will do.
     const fn boards(self) -> &'static [Board] {
         match self {
             Self::Arduino => &[Board::Uno, Board::Mega, Board::Pico, Board::Esp32],

@@ -22,7 +22,7 @@ pub(crate) use self::newping::newping;
 pub(crate) use self::programs::{Drawn, programs};
 use crate::steps::{Steps, command, empty, run};
 
-/// Folder in which it is packed, built and run.
+/// Folder in which the library is packed, built and run.
 const TARGET: &str = "target/arduino";
 
 /// Wiring of an example: a trigger and an echo for each module; and true if it runs in the short test.

@@ -40,7 +40,7 @@ pub(crate) enum Tests {
     No,
     /// The tests that `cargo xtask test` runs.
     Short,
-    /// All of them.
+    /// All tests.
     Long,
 }
 

@@ -40,11 +40,11 @@ pub struct Play {
 /// Connection of the faulty sensor's line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wiring {
-    /// To its own pin.
+    /// To the sensor's own pin.
     Own,
     /// To the pin of this sensor, whose own line goes to the faulty one's pin.
     Exchanged(u8),
-    /// To its own pin, and the program does not make the call that its driver needs.
+    /// To the sensor's own pin, but without the call that the driver needs.
     Forgotten,
 }
 
@@ -300,7 +300,7 @@ pub struct Said {
     pub kind: u32,
     /// The state after the event, in the form of [`core_side::state`](state).
     pub state: [u32; 5],
-    /// True if its line is healthy.
+    /// True if the sensor's line is healthy.
     pub is_well: bool,
 }
 

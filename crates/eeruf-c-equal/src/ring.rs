@@ -25,7 +25,7 @@ pub struct Needs {
 }
 
 impl Needs {
-    /// The claim of a schedule that was not verified for them.
+    /// The claim of an unverified schedule with these requirements.
     fn claim(self) -> Claim {
         let Self { t_delta_us, min_interval_us, window_us, layout, neighbours, stale_echo } = self;
         Claim { verified_for: [t_delta_us, min_interval_us, window_us, 0, u32::MAX, 1], layout, neighbours, stale_echo }

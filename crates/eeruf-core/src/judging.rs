@@ -29,7 +29,7 @@ pub struct Heard<'r> {
     pub sensor: u8,
     /// Time of the firing.
     pub fired: Instant,
-    /// Time since its firing before; meaningless if that was forgotten.
+    /// Time since the sensor's previous firing; meaningless if that was forgotten.
     pub since_before: Micros,
     /// The echo times, earliest first; empty for silence.
     pub echoes: &'r [Micros],

@@ -106,7 +106,7 @@ pub mod judge {
     pub use crate::ring::AgreementRing;
 }
 
-/// The findings of [`Schedule::verify`], and what they are made of.
+/// The findings of [`Schedule::verify`], and their parts.
 pub mod conditions {
     pub use crate::layout::neighbour_rows;
     pub use crate::requirements::Least;

@@ -105,7 +105,7 @@ struct Watched {
     known: Known,
     /// The instant of the last confirmation, or the beginning of the present state.
     at: Instant,
-    /// True if the last reading did not confirm it.
+    /// True if the last reading did not confirm the state.
     doubted: bool,
     /// True if the last reading was [`ReadingKind::NoEcho`].
     silent: bool,

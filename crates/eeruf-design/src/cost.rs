@@ -27,7 +27,7 @@ pub struct CostAnswer {
     /// The kind of way to recommend; none if no kind has a setting of at most one false stop a minute under each
     /// condition.
     pub recommended: Option<String>,
-    /// A kind of less cost that does not differ significantly from it.
+    /// A cheaper kind that does not differ significantly from this one.
     pub draw: Option<String>,
     /// The robot's speed in m/s.
     pub speed_m_s: f64,
@@ -59,7 +59,7 @@ pub struct BestWay {
     pub condition: &'static str,
     /// The way's name.
     pub way: &'static str,
-    /// Votes that its readings need.
+    /// Votes that the way's readings need.
     pub votes: String,
     /// False if the way has more than one false stop a minute in the rooms where votes were chosen, as has every way of
     /// its kind.
@@ -88,7 +88,7 @@ pub struct UnderCondition {
     pub blind_travel_m_95: Option<[f64; 2]>,
     /// False stops a minute.
     pub false_stops_per_min: f64,
-    /// Interval of those.
+    /// 95 % interval of false stops a minute.
     pub false_stops_per_min_95: [f64; 2],
 }
 

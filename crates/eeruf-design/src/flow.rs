@@ -13,7 +13,7 @@ pub struct FlowDesign {
     pub turns: TurnSettings,
     /// Settings of the ring's judge.
     pub belief: BeliefSettings,
-    /// The longest time for which its sensors listen.
+    /// The longest listening time of the ring's sensors.
     pub window: Micros,
     /// Deaf time after a firing.
     pub blanking: Micros,
@@ -67,7 +67,7 @@ impl RingSpec {
         Some(self.c.echo_time((1e3 * needs_to_see_m(fast_m_s)?).round() as u32).min(self.listening))
     }
 
-    /// Returns the flow design of its robot as judged in rooms.
+    /// Returns the flow design of the robot as judged in rooms.
     pub fn flow_of(&self, robot: &Robot, seed: u32) -> FlowDesign {
         let &Robot { window, blanking, ref limits, ref together, .. } = robot;
         let needs = self.problem().requirements;

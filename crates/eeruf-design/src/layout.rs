@@ -79,7 +79,7 @@ impl OwnedLayout {
 }
 
 impl LayoutKey {
-    /// Returns true if its pairs depend on the number of neighbours.
+    /// Returns true if the layout's pairs depend on the number of neighbours.
     pub(crate) fn counts_neighbours(&self) -> bool {
         !matches!(self, Self::Pairs(_))
     }

@@ -16,7 +16,7 @@ pub struct WhatIf {
     pub need: String,
     /// The shortest period with this change, or the shortest found.
     pub period: Option<Micros>,
-    /// True if no schedule with it is shorter.
+    /// True if no schedule with this change is shorter.
     pub proven: bool,
 }
 

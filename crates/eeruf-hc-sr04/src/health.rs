@@ -18,7 +18,7 @@ pub enum Health {
     /// An edge or a part of its answer got lost: the line fell without having risen, or rose and was low again without
     /// having fallen.
     LosesEdges,
-    /// One of its pins, its bus or its serial line reported an error.
+    /// A pin, the bus or the serial line reported an error.
     PinError,
 }
 

@@ -47,7 +47,7 @@ pub(crate) struct Control {
     ring: HostRing<ScheduledRing<'static, SENSORS>, Idle>,
     /// The sensor that is healthy here.
     well: u8,
-    /// The coming edges on its line, the latest first.
+    /// The coming edges on the sensor's line, the latest first.
     ahead: Vec<Edge>,
     pub(crate) read: Read,
 }

@@ -86,7 +86,7 @@ pub(crate) struct Run {
     pub(crate) max_late: Micros,
     /// The last reported fault of each sensor that had one.
     named: [Health; SENSORS],
-    /// The period at whose end it was first reported.
+    /// The period at whose end the fault was first reported.
     named_after: Option<u32>,
 }
 
@@ -103,7 +103,7 @@ pub(crate) struct Change {
 pub(crate) enum Pace {
     /// As fast as the emulation goes.
     Free,
-    /// In real time, for programs that listen to its serial line.
+    /// In real time, for programs that listen to the board's serial line.
     Wall,
 }
 

@@ -141,7 +141,7 @@ impl Kind {
         Self::Numbers(Rc::new(Numbers { schema, path: parts, unit, is_single: !path.contains("[]") }))
     }
 
-    /// Returns true if its sensors are places in a message.
+    /// Returns true if sensors are told apart by their places in a message.
     pub(crate) fn has_places(&self) -> bool {
         match self {
             Self::Range { .. } => false,

@@ -45,7 +45,7 @@ pub struct Guess {
 pub struct Skipped {
     /// The topic.
     pub topic: String,
-    /// Reason why its messages were left out.
+    /// Reason why the topic's messages were left out.
     pub why: String,
     /// Number of omitted messages, if they were counted.
     pub messages: u64,

@@ -221,7 +221,7 @@ impl Sink<'_> {
 }
 
 impl Topic {
-    /// Returns true if its messages hold readings, judging by their type.
+    /// Returns true if the topic's messages hold readings, judging by their type.
     pub(crate) const fn has_readings(&self) -> bool {
         self.decoding.is_some()
     }

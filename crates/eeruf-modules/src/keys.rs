@@ -201,7 +201,7 @@ pub const KEYS: [Key; 15] = [
 ];
 
 impl Key {
-    /// Returns true if its values are whole numbers: microseconds, hertz, cycles.
+    /// Returns true if the figure's values are whole numbers: microseconds, hertz, cycles.
     pub fn is_whole(&self) -> bool {
         matches!(self.kind, Kind::Number { scale, .. } if scale == 1.0)
     }

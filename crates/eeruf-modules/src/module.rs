@@ -16,11 +16,11 @@ pub struct Module {
     pub blanking_us: u32,
     /// Frequency in Hz.
     pub frequency_hz: u32,
-    /// Bandwidth around its frequency, in which it sends and hears, in Hz.
+    /// Bandwidth around the frequency, for sending and hearing, in Hz.
     pub bandwidth_hz: u32,
     /// Length of the burst in cycles.
     pub burst_cycles: u32,
-    /// The way in which its gain grows while it listens.
+    /// The growth of the gain while the module listens.
     pub gain: Gain,
     /// Radius of the piston with the same beam, in um.
     pub radius_um: u32,
@@ -139,7 +139,7 @@ impl NoEcho {
         }
     }
 
-    /// Time for which its line is held, in us; 0 for one that is not.
+    /// Time for which the module holds its line, in us; 0 if it does not.
     pub const fn hold_us(self) -> u32 {
         match self {
             Self::Holds { us } => us,
@@ -165,7 +165,7 @@ pub struct PulseTimes {
 }
 
 impl Module {
-    /// Returns true if it hears another kind of module, that is, if their bands overlap.
+    /// Returns true if the module hears another kind, that is, if their bands overlap.
     pub const fn hears(&self, other: &Self) -> bool {
         2 * self.frequency_hz.abs_diff(other.frequency_hz) < self.bandwidth_hz + other.bandwidth_hz
     }

@@ -38,7 +38,7 @@ pub(crate) struct Work<T> {
     asks: Receiver<Ask<T>>,
     answers: Sender<Answer>,
     file: Option<Py<PyAny>>,
-    /// Position of the file when it was given, which the work sees as its beginning.
+    /// Position of the file when it was given, at which the work begins.
     base: u64,
 }
 

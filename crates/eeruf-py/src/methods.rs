@@ -140,7 +140,7 @@ impl Method {
         self.entry.name()
     }
 
-    /// The keyword arguments that make it again.
+    /// The keyword arguments that recreate the object.
     fn _arguments<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let all = PyDict::new(py);
         all.set_item("name", self.name())?;

@@ -159,7 +159,7 @@ impl Calls {
         locked(&self.raised).take()
     }
 
-    /// Returns true if some of them were arguments of the simulation.
+    /// Returns true if some callables were arguments of the simulation.
     pub(crate) fn is_given(&self) -> bool {
         !self.given.is_empty()
     }

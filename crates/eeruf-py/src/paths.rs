@@ -125,7 +125,7 @@ impl Paths {
         self.columns.get(py, 3, self.paths.departure_rad.iter().copied())
     }
 
-    /// The direction in which the receiver looks to see it, in (-pi, pi]: float64.
+    /// The direction in which the receiver sees the path, in (-pi, pi]: float64.
     #[getter]
     fn arrival_rad<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.columns.get(py, 4, self.paths.arrival_rad.iter().copied())

@@ -88,7 +88,7 @@ impl Readings {
         self.columns.get(py, 2, self.readings.period.iter().map(|&period| i64::from(period)))
     }
 
-    /// The phase in which it fired, 0 for a and 1 for b: int64.
+    /// The phase of the firing, 0 for a and 1 for b: int64.
     #[getter]
     fn phase<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.columns.get(py, 3, self.readings.phase.iter().map(|&phase| i64::from(phase)))

@@ -28,7 +28,7 @@ const SENSORS: RangeInclusive<u8> = 0..=MAX_SENSORS as u8 - 1;
 pub(crate) struct Fire {
     /// The sensor, from 0.
     sensor: u8,
-    /// The phase that its wait belongs to: 0 for a, 1 for b.
+    /// The phase of the firing's wait: 0 for a, 1 for b.
     phase: u8,
     /// Time when it was due, on the ring's clock: before the time of the poll if that was late.
     due_us: u32,
@@ -96,7 +96,7 @@ pub(crate) struct Reading {
     kind: &'static str,
     /// The time of the echo after firing, in microseconds; None without echo.
     t_echo_us: Option<u32>,
-    /// The echo time it was compared with, in microseconds; None if there was none.
+    /// The echo time compared with, in microseconds; None if there was none.
     previous_us: Option<u32>,
     /// Number of firings since the sensor's last accepted reading: 0 for this one, None if there never was one.
     age: Option<u16>,
@@ -277,7 +277,7 @@ impl PeriodEnded {
         self.0.max_late.as_micros()
     }
 
-    /// The sum of the lateness of all its firings, in microseconds, at most 65,535.
+    /// The sum of the lateness of the period's firings, in microseconds, at most 65,535.
     #[getter]
     fn sum_late_us(&self) -> u32 {
         self.0.sum_late.as_micros()

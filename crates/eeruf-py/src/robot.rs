@@ -595,7 +595,7 @@ impl Robot {
         }
     }
 
-    /// The points that it drives through, (x, y) in metres; None if there are none.
+    /// The robot's waypoints, (x, y) in metres; None if there are none.
     #[getter]
     fn waypoints_m(&self) -> Option<Vec<(f64, f64)>> {
         match &self.robot.motion {
@@ -604,7 +604,7 @@ impl Robot {
         }
     }
 
-    /// Speed through its waypoints, in m/s; None without any.
+    /// Speed through the waypoints, in m/s; None without any.
     #[getter]
     fn speed_m_s(&self) -> Option<f64> {
         match &self.robot.motion {
@@ -619,7 +619,7 @@ impl Robot {
         self.robot.clock.offset_us
     }
 
-    /// Drift of its clock (positive: too fast), in millionths.
+    /// Drift of the robot's clock (positive: too fast), in millionths.
     #[getter]
     fn clock_drift_ppm(&self) -> f64 {
         self.robot.clock.drift_ppm

@@ -29,7 +29,7 @@ pub enum Message {
     Period {
         /// The number, from 0.
         period: u32,
-        /// The largest lateness of a firing in it.
+        /// The largest lateness of a firing in the period.
         max_late: Micros,
         /// Number of edges that got lost on the board since it started, modulo 256.
         edges_lost: u8,

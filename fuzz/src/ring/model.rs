@@ -22,7 +22,7 @@ pub(super) struct Heard {
     /// Time of the firing.
     fired: u64,
     t_delta: u32,
-    /// True if foreign sound explains it together with the one before.
+    /// True if foreign sound explains this reading and the one before.
     ambiguous: bool,
     /// The change that odometry expects since the one before.
     expected: i32,
@@ -66,7 +66,7 @@ pub(crate) struct Open {
 }
 
 impl Open {
-    /// Returns true if it has a reading that can be emitted, where one echo is enough.
+    /// Returns true if the sensor has a reading that can be emitted, where one echo is enough.
     pub(crate) fn is_ready(&self) -> bool {
         !self.echoes.is_empty() || self.off == WIDE
     }

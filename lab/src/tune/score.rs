@@ -15,7 +15,7 @@ pub(crate) const ROUNDS: [Round; 3] =
 /// Score of a pilot on a round's courses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Score {
-    /// Number of courses that it finished alone, with a second robot behind, and with one ahead.
+    /// Number of courses that the pilot finished alone, with a second robot behind, and with one ahead.
     pub(crate) finished: [u32; 3],
     /// Time of driving on finished courses, in seconds.
     pub(crate) time_s: f64,

@@ -74,7 +74,7 @@ struct PathJson {
     travel_error_us: f64,
     length_m: f64,
     scatter_us: f64,
-    /// Number of offsets at which it was heard, and of all.
+    /// Number of offsets at which the path was heard, and of all.
     offsets: (u32, u32),
     readings: u32,
     heard: f64,

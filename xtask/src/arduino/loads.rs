@@ -218,7 +218,7 @@ struct Ring<'a> {
 }
 
 impl Ring<'_> {
-    /// Returns the rows of all its runs, and the broken promises.
+    /// Returns the rows of all runs of the load, and the broken promises.
     fn rows(&self, world: &Path, seconds: u32) -> Result<(String, Vec<String>)> {
         let (mut rows, mut broken) = (String::new(), vec![]);
         let (modules, place) = (self.modules, self.place.name);

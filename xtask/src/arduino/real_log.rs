@@ -14,7 +14,7 @@ use crate::steps::output;
 use crate::toolchain::program;
 
 const MODULES: usize = 8;
-/// Duration of each of its three ways of firing.
+/// Duration of each of the sketch's three ways of firing.
 const SECONDS: u32 = 6;
 
 pub(super) fn run(library: &Path) -> Result<()> {

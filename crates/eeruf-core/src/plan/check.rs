@@ -24,7 +24,7 @@ pub enum BrokenPromise {
     MinRefire {
         /// The sensor, from 0.
         sensor: u8,
-        /// Time after its last firing.
+        /// Time after the sensor's last firing.
         after: Micros,
     },
     /// A deadline lies further ahead than `horizon`.

@@ -14,7 +14,7 @@ use crate::time::{Instant, Micros};
 pub struct Upcoming {
     /// The sensor, from 0.
     pub sensor: u8,
-    /// The phase its wait belongs to.
+    /// The phase of the firing's wait.
     pub phase: Phase,
     /// Time when the firing is due.
     pub due: Instant,

@@ -279,6 +279,6 @@ pub(super) struct Ended<const E: usize> {
     /// Reason why the firing says nothing about the echo time, if it does not.
     pub(super) unusable: Option<ReadingKind>,
     pub(super) echoes: [Micros; E],
-    /// Uncertainty of these echoes, of those of the firing before, and of all earlier ones.
+    /// Uncertainty of the last firing's echoes, of the previous firing's, and of all earlier ones.
     pub(super) uncertain: [u8; 3],
 }

@@ -6,7 +6,7 @@ use super::{FoundPath, Settings};
 /// The sender of a reading.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Named {
-    /// The sensor that sent it, from 0: the receiver itself for its own echo.
+    /// The sensor that sent the sound, from 0: the receiver itself for its own echo.
     pub sender: u8,
     /// Travel time of the sound, in microseconds.
     pub travel_us: f64,

@@ -13,7 +13,7 @@ pub struct Hearing {
     pub sensor: u8,
     /// Firings with any echo.
     pub echoes: Share,
-    /// Firings whose reading is certainly its own echo.
+    /// Firings whose reading is certainly the sensor's own echo.
     pub own: Share,
     /// Firings whose reading is certainly another sensor's sound.
     pub foreign: Share,
@@ -21,9 +21,9 @@ pub struct Hearing {
     pub unnamed: Share,
     /// Share of firings with an echo that fits no path.
     pub unexplained: Share,
-    /// True if it hears nothing: nothing is in its range, or it is deaf.
+    /// True if the sensor hears nothing: nothing is in range, or it is deaf.
     pub is_silent: bool,
-    /// True if its own echo was found as a path.
+    /// True if the sensor's own echo was found as a path.
     pub has_own_path: bool,
     /// The phases with at least five firings in which its own echo was never first, with the number of firings.
     pub blind_phases: Vec<(u8, u32)>,

@@ -10,7 +10,7 @@ pub(crate) struct Looped {
     pub(crate) receiver: usize,
     /// True if the difference is constant instead of the sum.
     pub(crate) is_difference: bool,
-    /// The share of the rounds in which it is constant.
+    /// The share of the rounds in which the value is constant.
     pub(crate) share: f64,
     pub(crate) rounds: usize,
     /// The range of the sender's readings in those rounds, in microseconds.

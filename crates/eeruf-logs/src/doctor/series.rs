@@ -9,7 +9,7 @@ const NEXT_US: f64 = 100.0;
 const CHANGES_US: [f64; 5] = [150.0, 500.0, 1500.0, 3000.0, 7000.0];
 /// Largest change of an echo relative to the time passed, for a robot at up to 3 m/s.
 const DRIVING: f64 = 0.018;
-/// Width of a value above which it is moving.
+/// Width of values above which they are moving.
 const STEADY_US: f64 = 600.0;
 
 /// Firing times of a sensor, and its echo times; both in microseconds, NaN without echo.

@@ -18,7 +18,7 @@ const LONGEST: u32 = 60;
 
 /// A recogniser of a board's lines.
 pub(super) struct Boot {
-    /// The words of `BEGINS`, `ENDS` and `ALONE`, since each line is compared with all of them.
+    /// The words of `BEGINS`, `ENDS` and `ALONE`, split once because each line is compared with all of them.
     lists: [Vec<&'static str>; 3],
     /// Number of lines that may still follow in a boot message or a crash.
     left: u32,

@@ -44,7 +44,7 @@ pub(super) struct Column {
     last: String,
     pub(super) has_unit_in_cells: Option<RangeUnit>,
     pub(super) units: usize,
-    /// True if the unit below its name is a unit of length, false for another unit.
+    /// True if the unit below the column's name is a unit of length, false for another unit.
     pub(super) has_length: bool,
     pub(super) has_other_unit: bool,
     /// A unit in which every second cell repeats the range of the cell before.

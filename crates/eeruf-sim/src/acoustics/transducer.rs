@@ -52,7 +52,7 @@ pub fn gain_at(profile: GainProfile, time_s: f64, full_s: f64) -> f64 {
 pub struct Transducer {
     /// Frequency in Hz.
     pub frequency_hz: f64,
-    /// Width of the band that it sends in and hears, around its frequency, in Hz.
+    /// Width of the band for sending and hearing, around the frequency, in Hz.
     pub bandwidth_hz: f64,
     /// Radius of the piston in metres.
     pub radius_m: f64,

@@ -21,7 +21,7 @@ pub struct Difference {
     pub median_95: Option<[f64; 2]>,
     /// Number of scenes in which the difference is below 0.
     pub less: usize,
-    /// Number of scenes in which it is above 0.
+    /// Number of scenes in which the difference is above 0.
     pub more: usize,
     /// Two-sided p-value of the exact sign test over the scenes that differ; 1 without any.
     pub p_sign: f64,

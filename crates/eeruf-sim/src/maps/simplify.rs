@@ -36,7 +36,7 @@ struct Kept<'a> {
 #[derive(Clone, Copy)]
 struct Line {
     outline: usize,
-    /// The place of the corner that it begins at, in its outline.
+    /// The place in the outline of the corner at which the line begins.
     first: usize,
     ends: [Corner; 2],
 }

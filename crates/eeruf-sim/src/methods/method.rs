@@ -102,7 +102,7 @@ impl Method {
         self.row().judge.asks()
     }
 
-    /// Returns true if it fires like today's sketches and modules, by a robot's [`Sketch`](crate::Sketch).
+    /// Returns true if the method fires like today's sketches and modules, by a robot's [`Sketch`](crate::Sketch).
     pub const fn is_sketch(self) -> bool {
         matches!(self.row().judge, AsSketched)
     }
@@ -112,7 +112,7 @@ impl Method {
         Self::ALL.into_iter().filter(|method| !method.is_sketch() && !method.is_on_demand())
     }
 
-    /// Returns true if it is simulated only when requested by name, since it combines two methods.
+    /// Returns true if the method is simulated only when requested by name, since it combines two methods.
     pub const fn is_on_demand(self) -> bool {
         self.row().on_demand
     }

@@ -12,7 +12,7 @@ use super::readings::{Cause, NO_PATH, Readings, SensorId};
 pub struct Attribution {
     /// The sensor that was fooled.
     pub receiver: SensorId,
-    /// Cause of the error. With [`Cause::Nothing`] it heard nothing where it should have.
+    /// Cause of the error. With [`Cause::Nothing`] the sensor heard nothing where it should have.
     pub cause: Cause,
     /// Sensor that caused the wrong readings, if there is one.
     pub emitter: Option<SensorId>,

@@ -49,14 +49,14 @@ pub struct HeardPath {
     pub length_m: f64,
     /// Direction of departure, in the scene's frame.
     pub departure_rad: f64,
-    /// Direction in which the receiver sees it, in the scene's frame.
+    /// Direction in which the receiver sees the path, in the scene's frame.
     pub arrival_rad: f64,
     /// The bounces, emitter to receiver. [`Scene::bounce_points`](crate::Scene::bounce_points) says where they are.
     pub bounces: Box<[Bounce]>,
 }
 
 impl HeardPath {
-    /// Returns true if it causes *direct* crosstalk: without a bounce or by a single reflection.
+    /// Returns true if the path causes *direct* crosstalk: without a bounce or by a single reflection.
     pub fn is_direct(&self) -> bool {
         self.order <= 1
     }
@@ -75,7 +75,7 @@ pub struct Readings {
     pub robot: Vec<u16>,
     /// The sensor on its ring, from 0.
     pub sensor: Vec<u8>,
-    /// The period of the robot's ring in which it fired, from 0.
+    /// The period of the robot's ring, from 0.
     pub period: Vec<u32>,
     /// The phase of the firing, from 0.
     pub phase: Vec<u8>,

@@ -128,7 +128,7 @@ impl Body {
         self.with_shape(|shape| other.with_shape(|other| meets(&placed(pose), shape, &placed(there), other)))
     }
 
-    /// Returns true if a point is within it.
+    /// Returns true if a point is within the body.
     pub fn holds(&self, pose: &Pose, point: Point) -> bool {
         self.overlaps(pose, &Self::Disc(TOUCH_M), &Pose::from(point.coords))
     }
@@ -157,7 +157,7 @@ impl Body {
         }
     }
 
-    /// Returns true if its dimensions are positive numbers.
+    /// Returns true if the body's dimensions are positive numbers.
     pub(crate) fn is_valid(&self) -> bool {
         let fits = |size: f64| size > 0.0 && size <= super::MAX_POLE_M;
         match *self {

@@ -19,7 +19,7 @@ use crate::{
 pub struct CriticalPath {
     /// Index of the sensor that fires; 0 if there is only one emitter.
     pub emitter: u32,
-    /// Index of the sensor that hears it.
+    /// Index of the sensor that hears the sound.
     pub receiver: u32,
     /// Length in metres.
     pub length_m: f64,

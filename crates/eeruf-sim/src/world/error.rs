@@ -73,7 +73,7 @@ pub enum WorldError {
         robot: usize,
         /// The object that the robot touches.
         contact: Contact,
-        /// The radius in metres of the disc that it takes up if it has no body.
+        /// The radius in metres of the disc that a robot without a body takes up.
         disc_m: Option<f64>,
     },
     /// A sensor that starts inside something.

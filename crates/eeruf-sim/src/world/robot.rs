@@ -77,7 +77,7 @@ pub struct Robot {
     /// [`window`](Self::window) and [`t_delta`](Self::t_delta) are then the largest, which other methods use for all.
     /// Empty by default.
     pub limits: Vec<SensorLimits>,
-    /// The settings of a sketch that fires it.
+    /// The settings of a sketch that fires the robot's ring.
     pub firing: Sketch,
     /// The time for which methods that fire one by one assume sound to be heard: that of its modules if they are
     /// [given](Self::with_modules). The default is 0: no longer than sensors listen.
@@ -88,7 +88,7 @@ pub struct Robot {
     /// P: the largest change of a foreign sound's path from one reading to the next, for rings that fire by tables.
     /// `None`, the default, for [`t_delta`](Self::t_delta).
     pub path_change: Option<Micros>,
-    /// Sets of sensors that its own schedule fires together, bit x for sensor x.
+    /// Sets of sensors that the robot's own schedule fires together, bit x for sensor x.
     pub together: Vec<u64>,
     /// True if odometry tells the ring the expected change of a good reading by the robot's own motion.
     pub odometry: bool,
@@ -145,7 +145,7 @@ impl Robot {
         }
     }
 
-    /// Returns true if its sensors are not all alike.
+    /// Returns true if the robot's sensors are not all alike.
     pub(crate) fn is_uneven(&self) -> bool {
         !self.limits.is_empty() || !self.together.is_empty()
     }

@@ -46,9 +46,9 @@ impl Operating {
 pub struct Cell {
     /// Things.
     pub things: usize,
-    /// The times in which half of them, and nine of ten, are seen, in ms.
+    /// The times in which half of the things, and nine of ten, are seen, in ms.
     pub t50_t90_ms: [f64; 2],
-    /// The time in which 95 % of them are seen, in ms; infinite if fewer are.
+    /// The time in which 95 % of the things are seen, in ms; infinite if fewer are.
     pub t95_ms: Estimate,
     /// The share of things that are never seen.
     pub never: f64,

@@ -15,7 +15,7 @@ use crate::{
 pub(super) struct Heard {
     pub(super) sensor: usize,
     pub(super) fired_s: f64,
-    /// Time when it was complete: when its echo ended, or the sensor had listened.
+    /// Time when the reading was complete: when its echo ended, or the sensor had listened.
     pub(super) ready_s: f64,
     /// Position of the sensor when it fired.
     pub(super) seen: Pose,
@@ -26,7 +26,7 @@ pub(super) struct Heard {
     /// The change that odometry expects of a good reading since the sensor's firing before.
     pub(super) change_us: f64,
     pub(super) cause: Cause,
-    /// True if the way of firing believes it.
+    /// True if the way of firing believes the reading.
     pub(super) accepted: bool,
 }
 

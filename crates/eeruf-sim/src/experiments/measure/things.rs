@@ -170,7 +170,7 @@ impl Thing {
         points.min_by(|a, b| (a - from).norm().total_cmp(&(b - from).norm())).unwrap_or(from)
     }
 
-    /// The echo time off its nearest point for a sensor at a place.
+    /// The echo time off the thing's nearest point for a sensor at a place.
     pub(super) fn nearest_us(&self, c: f64, from: Point) -> f64 {
         2e6 * (self.nearest_point(from) - from).norm() / c
     }

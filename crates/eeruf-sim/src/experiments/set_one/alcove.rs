@@ -11,7 +11,7 @@ use crate::{
 pub const SENSORS: usize = 8;
 /// Spacing of the sensors, in degrees: that of the paper's ring.
 pub const SPACING_DEG: f64 = 15.0;
-/// The radius of the arc that they stand on, in metres: a choice.
+/// The radius of the sensors' arc, in metres: a choice.
 pub const RADIUS_M: f64 = 0.30;
 
 /// Dimensions of one alcove and of the robot before it. The mouth lies on the x axis around the origin, the back wall

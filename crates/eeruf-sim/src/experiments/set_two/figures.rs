@@ -16,7 +16,7 @@ pub struct Figures {
     pub finished_95: [f64; 2],
     /// Number of courses in which the robot touched something.
     pub contacts: usize,
-    /// Number of courses in which it was stuck, or too slow.
+    /// Number of courses in which the robot was stuck, or too slow.
     pub timed_out: usize,
     /// Way over time of all courses together, in m/s.
     pub mean_speed_m_s: f64,

@@ -57,7 +57,7 @@ pub struct Run {
     /// null.
     #[serde(deserialize_with = "infinite")]
     pub nearest_m: f64,
-    /// Number of readings its sensors took.
+    /// Number of readings of the robot's sensors.
     pub readings: u32,
     /// Number of readings that were not accepted.
     pub rejected: u32,
@@ -71,7 +71,7 @@ pub struct Run {
     pub poles_passed: u32,
     /// Number of poles passed that never had an echo entered into the grid.
     pub poles_missed: u32,
-    /// Poses on its way, every 30 ms.
+    /// The robot's poses on the way, every 30 ms.
     #[serde(default)]
     pub track: Vec<TrackPoint>,
     /// The grid at the end.

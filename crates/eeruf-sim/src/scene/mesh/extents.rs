@@ -41,7 +41,7 @@ pub(crate) struct Surface {
 #[derive(Clone, Copy, Debug)]
 struct Stretch {
     wall: usize,
-    /// Distance of its end from the wall's start, in metres.
+    /// Distance of the stretch's end from the wall's start, in metres.
     upto_m: f64,
     sides: [Ends; 2],
 }

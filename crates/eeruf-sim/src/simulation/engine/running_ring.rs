@@ -30,11 +30,11 @@ pub(crate) struct RunningRing {
     hearings: Vec<Hearing>,
     /// The first number of its sensors among all of the world's.
     pub(crate) sensors: core::ops::Range<usize>,
-    /// Time when its ring is due.
+    /// Time when the ring is due.
     pub(crate) wakes: u64,
-    /// Time when one of its sensors next hears something.
+    /// Time when a sensor of the ring next hears something.
     pub(crate) hears: u64,
-    /// Time when its control loop next reports the robot's motion.
+    /// Time when the control loop next reports the robot's motion.
     pub(crate) tells: u64,
 }
 

@@ -27,7 +27,7 @@ pub(crate) const EXTERNAL: u32 = u32::MAX - 1;
 pub(crate) struct Arrival {
     /// Start; for a sum, the start of its first sound.
     pub(crate) onset: u64,
-    /// Time when it is heard: at its onset, or later if its receiver needs time.
+    /// Time when the sound is heard: at its onset, or later if the receiver needs time.
     pub(crate) at: u64,
     /// Time when the sound was sent.
     pub(crate) sent: u64,
@@ -150,7 +150,7 @@ impl Hearing {
 /// One sensor's receiver.
 #[derive(Clone, Debug)]
 pub(crate) struct Receiver {
-    /// Time from which on an arrival would be heard; [`NEVER`] while it does not listen.
+    /// Time from which on an arrival would be heard; [`NEVER`] while the sensor does not listen.
     open: u64,
     /// Time until which it listens: the end of the window, or the next arrival for a sensor that reports one echo.
     until: u64,
@@ -181,7 +181,7 @@ impl Receiver {
         heard_count: 0,
     };
 
-    /// Returns the time of the next arrival that it will hear, as far as is known.
+    /// Returns the time of the next arrival that the sensor will hear, as far as is known.
     #[inline]
     pub(crate) fn next_at(&self) -> u64 {
         self.next.map_or(NEVER, |next| next.at)
@@ -195,7 +195,7 @@ impl Receiver {
         latest > self.own_until || (latest >= self.open && at <= self.until.saturating_add(slack))
     }
 
-    /// Forgets its echoes, for a new firing of its line.
+    /// Forgets the echoes, for a new firing of the line.
     pub(crate) fn forget(&mut self) {
         self.heard_count = 0;
     }

@@ -18,7 +18,7 @@ pub(crate) struct EnsonifiedPole<'a> {
 }
 
 impl EnsonifiedPole<'_> {
-    /// Returns true if certainly none of these receivers hears it.
+    /// Returns true if certainly none of these receivers hears the sound.
     #[inline]
     pub(crate) fn is_inaudible(&self, receivers: &[Point]) -> bool {
         if self.part == 0.0 {
@@ -28,7 +28,7 @@ impl EnsonifiedPole<'_> {
         self.is_too_faint(self.part, far2.fold(f64::INFINITY, f64::min).sqrt())
     }
 
-    /// Returns true if a receiver may hear it.
+    /// Returns true if a receiver may hear the sound.
     #[inline]
     pub(crate) fn may_be_heard(&self, receiver: usize, at: Point) -> bool {
         let Some(axis) = self.audibility.receivers.get(receiver) else { return true };

@@ -12,7 +12,7 @@ pub(super) struct ReceiverBlock {
     y: [f64; BLOCK],
     len: usize,
     all: bool,
-    /// A disc around all of them, which speeds up tests if they are close together.
+    /// A disc around all receivers, which speeds up tests if they are close together.
     middle: Point,
     radius: f64,
 }

@@ -80,7 +80,7 @@ impl EdgeSearch {
 
 /// A surface seen from its reflecting side by both source and receiver.
 struct Seen {
-    /// Point of reflection on its line, from the surface's point on along its direction, in metres.
+    /// Point of reflection, as the distance in metres from the surface's point along its direction.
     point_m: f64,
     /// Length of the path by that point.
     length_m: f64,

@@ -559,7 +559,7 @@ typedef struct EerufFlowConfig {
 
 /* The number of echoes in a row that makes one accepted. */
 enum {
-    EERUF_VOTES_BY_MOTION = 0,  /* one while the robot moves, if it is alone; else two */
+    EERUF_VOTES_BY_MOTION = 0,  /* one while a robot that is alone moves; else two */
     EERUF_VOTES_EVERY_ECHO = 1, /* one, with twice the least quiet: nothing else keeps foreign sound out */
     EERUF_VOTES_TWO_IN_A_ROW = 2
 };

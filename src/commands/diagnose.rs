@@ -24,8 +24,8 @@ use crate::report::watch::Watch;
 /// The log is CSV with the columns sensor, fired_us, period, phase and t_echo_us, one row for each firing: when it was,
 /// in microseconds of one clock, and the raw time to the first echo, empty without one. Sensors, periods and phases
 /// count from 0. A column `reading` may say what the ring made of it (`rejected`). `eeruf study --log` writes such a
-/// log. Messages `eeruf_msgs/msg/Firing` in an MCAP file are read as well. A ring whose waits are drawn at random
-/// says most; with two phases senders cannot be distinguished.
+/// log. Messages `eeruf_msgs/msg/Firing` in an MCAP file are read as well. A ring whose waits are random shows most;
+/// with two phases senders cannot be distinguished.
 ///
 /// The exit code is 1 if something is broken.
 #[derive(clap::Args)]

@@ -24,7 +24,7 @@ use crate::report::replay_flow::{FlowReplay, rows};
 /// With --ring the log is one of firings, as `eeruf diagnose` reads it, of a ring that fires by flow: each reading is
 /// judged again by what was fired, with the robot's motion from a column `g`, and compared with what the ring made of
 /// it, if the log says that. Without, it is whatever `eeruf logs` reads: MCAP, ROS 1 and ROS 2 bags, tables, lines of
-/// pairs, JSON. Of a damaged log all is read that can be, what cannot is said, and the exit code is 2. A gap in a
+/// pairs, JSON. A damaged log is read as far as possible; the rest is named, and the exit code is 2. A gap in a
 /// sensor's times, and a clock that steps back, start its comparison over. The last line says how the sensors fire, and
 /// what agreement proves for that.
 #[derive(clap::Args)]

@@ -51,7 +51,7 @@ pub enum Shape {
     Clear,
     /// A line through all points, of this width in metres.
     Strip(Vec<[f64; 3]>, f64),
-    /// A line for each two points, of this width in metres.
+    /// A line for each pair of points, of this width in metres.
     Lines(Vec<[f64; 3]>, f64),
     /// A cylinder of this diameter and height in metres.
     Cylinder(Placement, f64, f64),

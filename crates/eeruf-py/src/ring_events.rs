@@ -92,7 +92,7 @@ impl Fire {
 pub(crate) struct Reading {
     /// The sensor, from 0.
     sensor: u8,
-    /// The outcome, one of ``eeruf.KINDS``; ``"accepted"`` and ``"clear"`` (nothing in range) count.
+    /// The outcome, one of ``eeruf.KINDS``; ``"accepted"`` and ``"clear"`` (nothing in range) are to be believed.
     kind: &'static str,
     /// The time of the echo after firing, in microseconds; None without echo.
     t_echo_us: Option<u32>,

@@ -69,7 +69,7 @@ struct Run {
     gallops: u32,
     /// The problem in coarser ticks, and the length of those ticks.
     coarse: Option<(Box<Run>, u32)>,
-    /// The even ring that requires no more.
+    /// An even ring whose requirements are no stricter.
     even: Option<Box<Run>>,
     /// True if schedules are also looked for by repairs.
     is_mixed: bool,

@@ -137,7 +137,7 @@ pub(crate) struct Bursts {
     random: Random,
     normal: &'static Normal,
     noise: Noise,
-    /// Time when the next one comes, or [`NEVER`].
+    /// Time of the next burst, or [`NEVER`].
     pub(crate) next: u64,
 }
 

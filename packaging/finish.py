@@ -1,7 +1,7 @@
 """Finishes what maturin packs: `python finish.py WHEEL|STUB MODULE`.
 
-Editors show the docstrings of a stub, not those of a compiled module, and the repository has them in Rust alone: here
-they are written into the stub, as MODULE has them. A wheel is also made alike in whatever folder it was built: the bill
+Editors show the docstrings of a stub, not those of a compiled module, and the repository has them in Rust alone: this
+writes those of MODULE into the stub. It also makes wheels from different folders equal: the bill
 of materials that maturin writes names packages by that folder; here they are named from the repository's root.
 """
 

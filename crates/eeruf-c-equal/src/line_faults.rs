@@ -33,7 +33,7 @@ pub struct Play {
     /// Microseconds after the trigger.
     us: u32,
     high: bool,
-    /// True if its interrupt gets lost: the line changes without an interrupt.
+    /// True if the line changes without an interrupt.
     is_lost: bool,
 }
 

@@ -153,7 +153,7 @@ impl embedded_hal::i2c::I2c for I2cFake {
     }
 }
 
-/// A US-100 on a line of 9600 baud: bytes or errors by when they come.
+/// A US-100 on a line of 9600 baud: bytes or errors, in order of time.
 struct SerialFake {
     world: Shared,
     sensor: u8,

@@ -79,7 +79,7 @@ pub const MOST_AHEAD: usize = 48;
 pub struct Ahead {
     /// The edge, and when.
     pub edge: Edge,
-    /// True if its interrupt gets lost: the line changes without an interrupt.
+    /// True if the line changes without an interrupt.
     pub lost: bool,
 }
 

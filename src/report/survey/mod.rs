@@ -78,7 +78,7 @@ struct PathJson {
     offsets: (u32, u32),
     readings: u32,
     heard: f64,
-    /// Number of paths with as much support that are expected by accident.
+    /// Expected number of accidental paths with as much support.
     accidents: f64,
 }
 

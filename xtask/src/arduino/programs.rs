@@ -1,6 +1,6 @@
-//! `cargo xtask programs`: builds what `eeruf design --program` writes as a user would, and runs it: on modules that
-//! each stand before a wall of their own, and sketches also in an alcove where modules hear each other.
-//! `--combinations` draws way, language, number of modules, and other work of the loop.
+//! `cargo xtask programs`: builds the output of `eeruf design --program` like a user, and runs it: on modules that each
+//! stand before a wall of their own, and sketches also in an alcove where modules hear each other. `--combinations`
+//! draws way, language, number of modules, and other work of the loop.
 
 use std::path::Path;
 use std::process::Command;

@@ -289,7 +289,7 @@ impl WaitSearch {
         self.shortest(least, self.period, memory, budget, |period| Self { period, ..self.clone() })
     }
 
-    /// Bisection: a table for some waits and period also serves for longer ones. None is longer than the problem's.
+    /// Bisection: a table for some waits and period also serves for longer ones. Neither exceeds the problem's.
     fn shortest<const K: usize>(
         &self,
         mut least: u32,

@@ -185,7 +185,7 @@ pub struct LineEdge {
     pub at_us: u64,
     /// True if the line rises.
     pub high: bool,
-    /// True if its interrupt is lost: the line changes without a report.
+    /// True if the line changes without a report.
     pub lost: bool,
 }
 

@@ -141,7 +141,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         text = three_ways(args, &world, &mut watch)?;
     }
     if !simulates {
-        tell(text + "`--all` compares every method, and says who fooled whom.\n")?;
+        tell(text + MORE)?;
         return Ok(Answer::Yes);
     }
     let study = study(args, &world, watch)?;
@@ -159,16 +159,19 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
                 continue;
             }
             let count = drawing::pictures(folder, ending, &world, &study)?;
-            drawn += &format!("{count} pictures in {}.\n", folder.display());
+            drawn += &format!("{count} pictures in {}.{}", folder.display(), if has_tables { "\n" } else { " " });
         }
     }
     let tables = match has_tables {
         true => text::describe(&args.file, &world, &study),
-        false => "`--all` compares every method, and says who fooled whom.\n".to_owned(),
+        false => MORE.to_owned(),
     };
     show(args.json, || StudyJson::new(&args.file, &world, &study), || text + &drawn + &tables)?;
     Ok(Answer::Yes)
 }
+
+/// Option for the rest of the answer, after the pictures on their line.
+const MORE: &str = "`--all`: every method, and who fooled whom.\n";
 
 /// Number of trials of each way for choosing votes, and again for the report; the second number is for moving scenes.
 const TRIALS: u64 = 60;

@@ -3,9 +3,8 @@
 #![no_std]
 #![no_main]
 
-mod ring;
-
-use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, SpeedOfSound};
+use eeruf_core::flow::{BeliefSettings, FlowRing, TurnSettings};
+use eeruf_core::{Instant, Micros, ReadingKind, RingConfig, RingEvent, SpeedOfSound};
 use eeruf_hc_sr04::Settings;
 use eeruf_hc_sr04::capture::{CaptureRing, Captures, LineEdge, PIO_HZ, PIO_PROGRAM, PioLine};
 use embassy_executor::Spawner;
@@ -149,9 +148,12 @@ async fn main(spawner: Spawner) {
         lines: [PioLine::new(LISTENS); SENSORS],
     };
 
-    let config = RingConfig::new().with_window(Micros::from_millis(40));
-    let ring = Ring::new(&RING, config, now()).expect("the table was verified for such a window");
-    let mut ring = CaptureRing::new(ring, Settings::default(), modules).expect("the table lets modules rest");
+    let window = RingConfig::new().with_window(Micros::from_millis(37));
+    // Robots that meet need seeds of their own: this one is drawn at each start, and not 0.
+    let turns = TurnSettings::new(RoscRng.next_u32() | 1);
+    let ring = FlowRing::<SENSORS>::flow(SENSORS, turns, BeliefSettings::DEFAULT, window, now());
+    let ring = ring.expect("eight modules with such a window");
+    let mut ring = CaptureRing::new(ring, Settings::default(), modules).expect("modules rest long enough");
     loop {
         while let Some(event) = ring.poll(now()) {
             let RingEvent::Reading(reading) = event else { continue };
@@ -161,11 +163,6 @@ async fn main(spawner: Spawner) {
                 (ReadingKind::Unanswered, _) => log::info!("module {} does not answer", reading.sensor + 1),
                 _ => {}
             }
-        }
-        let now = now();
-        if now.since(said) >= SECOND {
-            log::info!("{} mm", Distances { watch: &watch, now });
-            said = now;
         }
         // Edges wait for nobody; firings wait for this.
         Timer::after_micros(500).await;

@@ -15,8 +15,6 @@ use eeruf_sim::experiments::measure::{
     Point, Speeds, Under, measure, measured_ways,
 };
 
-/// The rate of turn of a robot on the spot, in degrees a second.
-const TURN_DEG_S: f64 = 45.0;
 /// Numbers of false stops a minute for which the curve is printed.
 const CURVE: [f64; 3] = [0.1, 1.0, 10.0];
 
@@ -177,7 +175,7 @@ pub(crate) fn main(arguments: &[String]) -> crate::Answer {
         let design = spec.shortest_to_study().map_err(|error| error.to_string())?;
         let robot = design.as_ref().map_or(&spec, |design| &design.spec).room_robot()?.robot;
         let ways = measured_ways(&robot, design.as_ref().map(|design| &design.schedule));
-        let speeds = Speeds { speed_m_s: spec.room_speed_m_s(), turn_rad_s: TURN_DEG_S.to_radians() };
+        let speeds = Speeds { speed_m_s: spec.room_speed_m_s(), turn_rad_s: spec.room_turn_deg_s().to_radians() };
         let asked = MeasureAsked { conditions: Condition::ALL.into(), first, places, speeds };
         if blocks > 0 {
             planted(&ways, &asked, choose, blocks)?;
@@ -190,7 +188,7 @@ pub(crate) fn main(arguments: &[String]) -> crate::Answer {
             "{file}: {places} rooms of each kind from number {first} on, settings from {choose} from number 0 on."
         );
         println!("{}.\n", measured.under.iter().map(trials).collect::<Vec<_>>().join("; "));
-        table(&measured, &chosen, TURN_DEG_S);
+        table(&measured, &chosen, spec.room_turn_deg_s());
         curve(&measured, &chosen);
         let costs = measured.costs(&chosen, &measured.families());
         println!("\n| way | cost |\n|---|---:|");

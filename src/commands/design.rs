@@ -8,7 +8,9 @@ use clap::builder::PossibleValue;
 use eeruf_core::Micros;
 use eeruf_core::search::Progress;
 use eeruf_design::atlas::ATLAS;
-use eeruf_design::{CURVE_BUDGET, Effort, FoundJson, How, Need, NoDesign, RingDesign, RingSpec, RoomsAnswer, Way};
+use eeruf_design::{
+    CURVE_BUDGET, Effort, FoundJson, How, Need, NoDesign, RingDesign, RingSpec, RoomsAnswer, UnderCondition, Way,
+};
 use eeruf_files::emit;
 use eeruf_sim::experiments::rooms::RoomWay;
 use serde::Serialize;
@@ -171,6 +173,9 @@ struct Answered<'a> {
     rooms: Option<RoomsOrNot<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     how: Option<How>,
+    /// How soon the way sees what appears, and how often it stops for nothing.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    conditions: Vec<UnderCondition>,
     /// Pairs of neighbours, by number, that do not hear each other in their places.
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     not_neighbours: &'a [(usize, usize)],
@@ -225,6 +230,10 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     watch.forget_interrupt();
     let judges = !args.period_only && matches!(args.form(), None | Some(Form::Json));
     let rooms = judges.then(|| rooms::judged(&args.in_rooms, &spec, Some(&design), &mut watch)).transpose()?;
+    let conditions = match args.form() {
+        Some(Form::Json) => rooms::conditions(&args.in_rooms, &design.spec, rooms.as_ref(), &mut watch)?,
+        _ => vec![],
+    };
     // A schedule file holds a table, which flow has not.
     let emits = !args.period_only && matches!(args.form(), Some(Form::Source(form)) if form != emit::Form::Toml);
     let way = emits.then(|| rooms::recommended(&args.in_rooms, &spec, &design, &mut watch)).transpose()?;
@@ -250,8 +259,9 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
             let FoundJson { value_us, bound_us, proven, .. } = found;
             let period = PeriodJson { value_us, bound_us, proven, reason: found.reason.clone() };
             let period = rooms.is_some().then_some(period);
+            let not_neighbours = &spec.not_neighbours;
             let rooms = rooms.as_ref().map(RoomsOrNot::of);
-            print_line(to_json(&Answered { found, period, rooms, how, not_neighbours: &spec.not_neighbours }))?;
+            print_line(to_json(&Answered { found, period, rooms, how, conditions, not_neighbours }))?;
         }
         Some(Form::Source(form)) => {
             let table = || form.table(&design.schedule, &design.spec.table_requirements(), &design.spec.modules);

@@ -4,7 +4,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 
-use eeruf_design::{CHOICE, RingDesign, RingSpec, RoomsAnswer, RoomsAsked};
+use eeruf_design::{CHOICE, RingDesign, RingSpec, RoomsAnswer, RoomsAsked, UnderCondition};
 use eeruf_files::{FileError, Kind};
 use eeruf_sim::experiments::measure::{
     Condition, Family, MeasureAsked, MeasuredWay, Moving, Speeds, measure, measured_ways,
@@ -139,6 +139,20 @@ pub(crate) fn judged(
     let asked = asked(args, spec)?;
     let watch = Mutex::new(watch);
     Ok(spec.judge_in_rooms(design, &asked, &|share| goes_on(&watch, share)))
+}
+
+/// The figures of the recommended way where the ring is used; none in rooms of the user's own, where nothing appears.
+pub(crate) fn conditions(
+    args: &RoomArgs,
+    spec: &RingSpec,
+    judged: Option<&Result<RoomsAnswer, String>>,
+    watch: &mut Watch,
+) -> Result<Vec<UnderCondition>, InputError> {
+    let best = judged.and_then(|judged| judged.as_ref().ok()?.judgement.best());
+    let Some(best) = best.filter(|_| args.rooms.is_empty()) else { return Ok(vec![]) };
+    let asked = asked(args, spec)?;
+    let watch = Mutex::new(watch);
+    Ok(spec.way_in_rooms(&best.way, &asked, &|share| goes_on(&watch, share)).unwrap_or_default())
 }
 
 /// The recommended way of firing a ring, by [`judged`]; or the reason why there is none.

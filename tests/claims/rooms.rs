@@ -147,13 +147,23 @@ fn answers_fit_a_look_and_say_what_to_do() {
     }
 }
 
-// JSON says how in figures.
+// JSON says how in figures, and what that buys where the ring is used; in the user's own rooms nothing appears.
 #[test]
 fn way_of_firing_is_said_in_figures() {
-    let how = json(&["design", "rings/hc-sr04-8.toml", "--places", "1", "--json"])["how"].clone();
+    let answer = json(&["design", "rings/hc-sr04-8.toml", "--places", "1", "--json"]);
+    let how = &answer["how"];
     assert_eq!((how["way"].as_str(), how["votes"].as_str()), (Some("flow"), Some("by_motion")));
     assert_eq!(how["order"], serde_json::json!([0, 3, 6, 1, 4, 7, 2, 5]));
     assert!(how["gaps_us"][0].as_u64() < how["gaps_us"][1].as_u64());
+    let named: Vec<_> = answer["conditions"].as_array().into_iter().flatten().collect();
+    assert_eq!(named.iter().map(|of| &of["condition"]).collect::<Vec<_>>(), ["standing", "driving", "turning"]);
+    for of in named {
+        assert!(of["t95_ms_95"][0].as_f64() <= of["t95_ms"].as_f64().or(Some(f64::INFINITY)), "{of}");
+        assert_eq!(of["blind_travel_m_95"].is_array(), of["condition"] == "driving");
+        assert!(of["false_stops_per_min"].is_f64() && of["false_stops_per_min_95"].is_array(), "{of}");
+    }
+    let own = json(&["design", "rings/hc-sr04-8.toml", "--rooms", "scenes/alcove.toml", "--json"]);
+    assert!(own["recommended"].is_string() && own["conditions"].is_null(), "{own}");
 }
 
 #[test]

@@ -4,9 +4,9 @@
 use eeruf_sim::Robot;
 use eeruf_sim::experiments::measure::{
     Cell, Condition, Costs, Estimate, Family, MeasureAsked, Measured, MeasuredWay, Moving, ONE_A_MINUTE, Operating,
-    Speeds, Under, measure, measured_ways,
+    Point, Setting, Speeds, Under, measure, measured_ways,
 };
-use eeruf_sim::experiments::rooms::with_other_gain;
+use eeruf_sim::experiments::rooms::{RoomWay, with_other_gain};
 use serde::Serialize;
 
 use crate::asked::RoomsAsked;
@@ -35,8 +35,6 @@ pub struct CostAnswer {
     pub turn_deg_s: f64,
     /// The kinds of ways, the simplest first.
     pub kinds: Vec<KindCost>,
-    /// The recommended kind under each condition.
-    pub conditions: Vec<UnderCondition>,
     /// The kind to recommend where the ring is used under one condition alone, or its modules have the other gain.
     pub elsewhere: Vec<(String, Option<String>)>,
 }
@@ -69,15 +67,11 @@ pub struct BestWay {
     pub figures: Cell,
 }
 
-/// A kind of way under a condition, each figure with its 95 % interval.
+/// A way under a condition, each figure with its 95 % interval.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct UnderCondition {
     /// The condition's name.
     pub condition: &'static str,
-    /// The way's name.
-    pub way: &'static str,
-    /// Votes that its readings need.
-    pub votes: String,
     /// The time in which 95 % of what appears is seen, in ms; infinite, and null in JSON, if less is.
     pub t95_ms: f64,
     /// Interval of that time.
@@ -131,28 +125,6 @@ impl Both {
         };
         chosen.under.iter().zip(&measured.under).filter_map(of).collect()
     }
-
-    /// A kind of way under each condition.
-    fn conditions(&self, family: Family) -> Vec<UnderCondition> {
-        let of = |(best, under): (BestWay, &Under)| {
-            let Cell { t95_ms, false_stops_per_min, .. } = best.figures;
-            let drives = under.condition.moving == Moving::Driving;
-            let speed_m_s = under.places.iter().map(|place| place.speed_m_s).sum::<f64>() / under.places.len() as f64;
-            let travel_m = |t95_ms: f64| 1e-3 * t95_ms * speed_m_s;
-            UnderCondition {
-                condition: best.condition,
-                way: best.way,
-                votes: best.votes,
-                t95_ms: t95_ms.value,
-                t95_ms_95: t95_ms.interval_95,
-                blind_travel_m: drives.then(|| travel_m(t95_ms.value)),
-                blind_travel_m_95: drives.then(|| t95_ms.interval_95.map(travel_m)),
-                false_stops_per_min: false_stops_per_min.value,
-                false_stops_per_min_95: false_stops_per_min.interval_95,
-            }
-        };
-        self.best(family).into_iter().zip(&self.measured.under).map(of).collect()
-    }
 }
 
 fn name_of(family: usize) -> String {
@@ -169,6 +141,43 @@ impl RingSpec {
     /// there are other robots, beside one of its make.
     pub fn used_under(&self) -> &'static [Condition] {
         if self.meets_others { &Condition::ALL } else { &Condition::ALL[..3] }
+    }
+
+    /// The figures of one way, which believes what it accepts, under the conditions in which the ring is used.
+    ///
+    /// `keep_going` is as for [`judge_in_rooms`](Self::judge_in_rooms).
+    ///
+    /// # Errors
+    /// A room in which the robot cannot be, and if it was stopped, in words.
+    pub fn way_in_rooms(
+        &self,
+        way: &RoomWay,
+        asked: &RoomsAsked,
+        keep_going: &(dyn Fn(f64) -> bool + Sync),
+    ) -> Result<Vec<UnderCondition>, String> {
+        let robot = Robot { odometry: true, ..way.robot.clone() };
+        let ways = [(MeasuredWay { family: Family::OneByOne, way: RoomWay { robot, ..way.clone() } }, None)];
+        let RoomsAsked { first, places, .. } = *asked;
+        let speeds = Speeds { speed_m_s: self.room_speed_m_s(), turn_rad_s: self.room_turn_deg_s().to_radians() };
+        let asked = MeasureAsked { conditions: self.used_under().into(), first, places, speeds };
+        let measured = measure(&ways, &asked, keep_going).map_err(|error| error.to_string())?;
+        let point = Point { way: 0, setting: Setting::ALL[0] };
+        let of = |under: &Under| {
+            let Cell { t95_ms, false_stops_per_min, .. } = under.cell(point, &measured);
+            let drives = under.condition.moving == Moving::Driving;
+            let speed_m_s = under.places.iter().map(|place| place.speed_m_s).sum::<f64>() / under.places.len() as f64;
+            let travel_m = |t95_ms: f64| 1e-3 * t95_ms * speed_m_s;
+            UnderCondition {
+                condition: under.condition.as_str(),
+                t95_ms: t95_ms.value,
+                t95_ms_95: t95_ms.interval_95,
+                blind_travel_m: drives.then(|| travel_m(t95_ms.value)),
+                blind_travel_m_95: drives.then(|| t95_ms.interval_95.map(travel_m)),
+                false_stops_per_min: false_stops_per_min.value,
+                false_stops_per_min_95: false_stops_per_min.interval_95,
+            }
+        };
+        Ok(measured.under.iter().map(of).collect())
     }
 
     /// Judges the ways of firing the ring by their cost under the conditions in which it is used, with the schedule of
@@ -222,7 +231,6 @@ impl RingSpec {
             draw: draw.map(name_of),
             speed_m_s,
             turn_deg_s,
-            conditions: recommended.map_or(vec![], |family| here.conditions(Family::ALL[family])),
             kinds: kinds.collect(),
             elsewhere,
         })

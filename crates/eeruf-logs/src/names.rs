@@ -209,9 +209,8 @@ pub(crate) fn is_place(name: &str) -> bool {
 pub(crate) fn is_owner(remark: &str) -> bool {
     let words = words(remark);
     let is_numbered = words.last().is_some_and(|word| word.bytes().all(|byte| byte.is_ascii_digit()));
-    let is_called = |word: &String| is_in(SENSORS, word) || is_in("us hc sr nr no", word);
-    let is_place = !words.is_empty() && words.iter().all(|word| is_in(PLACES, word));
-    is_place || is_numbered && (remark.starts_with('#') || words.first().is_some_and(is_called))
+    let is_called = remark.starts_with('#') || is_in(SENSORS, &words[0]) || is_in("us hc sr nr no", &words[0]);
+    is_numbered && is_called || !words.is_empty() && words.iter().all(|word| is_in(PLACES, word))
 }
 
 /// Returns true for the name of filtered readings.
@@ -274,10 +273,6 @@ mod tests {
             ("field.header.frame_id", Meaning::Sensor),
             ("battery_v", Meaning::Other),
             ("ir_distance", Meaning::Other),
-            ("front_V", Meaning::Other),
-            ("range_yd", Meaning::Other),
-            ("distance [dm]", Meaning::Other),
-            ("sonar.py", Meaning::Other),
             ("sensor", Meaning::Sensor),
             ("Sensor 1", Meaning::Vague),
             ("distance_cm", Meaning::Range),
@@ -292,6 +287,8 @@ mod tests {
         ] {
             assert_eq!(meaning(name), expected, "{name}");
         }
+        let others = ["front_V", "range_yd", "distance [dm]", "sonar.py"];
+        assert_eq!(others.map(meaning), [Meaning::Other; 4]);
     }
 
     #[test]

@@ -158,26 +158,24 @@ impl RangeUnit {
 
     /// The unit in metres.
     pub(crate) fn metres(self, speed_of_sound: f64) -> f64 {
-        match self {
-            Self::M => 1.0,
-            Self::Cm => 1e-2,
-            Self::Mm => 1e-3,
-            Self::In => 0.0254,
-            Self::Ft => 0.3048,
-            Self::Ms => 0.5e-3 * speed_of_sound,
-            Self::Us => 0.5e-6 * speed_of_sound,
-        }
+        let (_, size) = self.said();
+        if matches!(self, Self::Ms | Self::Us) { 0.5 * size * speed_of_sound } else { size }
     }
 
     pub(crate) const fn name(self) -> &'static str {
+        self.said().0
+    }
+
+    /// The name of the unit, and its size in metres or seconds.
+    const fn said(self) -> (&'static str, f64) {
         match self {
-            Self::M => "metres",
-            Self::Cm => "centimetres",
-            Self::Mm => "millimetres",
-            Self::In => "inches",
-            Self::Ft => "feet",
-            Self::Ms => "milliseconds",
-            Self::Us => "microseconds",
+            Self::M => ("metres", 1.0),
+            Self::Cm => ("centimetres", 1e-2),
+            Self::Mm => ("millimetres", 1e-3),
+            Self::In => ("inches", 0.0254),
+            Self::Ft => ("feet", 0.3048),
+            Self::Ms => ("milliseconds", 1e-3),
+            Self::Us => ("microseconds", 1e-6),
         }
     }
 }
@@ -186,22 +184,13 @@ impl TimeUnit {
     /// Units by the names that options take.
     pub const NAMES: [(&str, Self); 4] = [("s", Self::S), ("ms", Self::Ms), ("us", Self::Us), ("ns", Self::Ns)];
 
-    pub(crate) const fn name(self) -> &'static str {
+    /// The name of the unit, and its nanoseconds.
+    pub(crate) const fn said(self) -> (&'static str, f64) {
         match self {
-            Self::S => "seconds",
-            Self::Ms => "milliseconds",
-            Self::Us => "microseconds",
-            Self::Ns => "nanoseconds",
-        }
-    }
-
-    /// The unit in nanoseconds.
-    pub(crate) const fn nanoseconds(self) -> f64 {
-        match self {
-            Self::S => 1e9,
-            Self::Ms => 1e6,
-            Self::Us => 1e3,
-            Self::Ns => 1.0,
+            Self::S => ("seconds", 1e9),
+            Self::Ms => ("milliseconds", 1e6),
+            Self::Us => ("microseconds", 1e3),
+            Self::Ns => ("nanoseconds", 1.0),
         }
     }
 }

@@ -33,7 +33,7 @@ impl Plan {
                     let of = |index: usize| self.columns[index].distinct.keys().next().cloned().unwrap_or_default();
                     // The smaller one is a part of a second.
                     let is_part = |unit: TimeUnit| {
-                        let below = self.columns[other].numbers.iter().all(|n| n * unit.nanoseconds() < 1e9);
+                        let below = self.columns[other].numbers.iter().all(|n| n * unit.said().1 < 1e9);
                         unit == TimeUnit::Ns || (below && self.columns[one].numbers.iter().all(|n| n.fract() == 0.0))
                     };
                     let fits = unit(one) == Some(TimeUnit::S)

@@ -181,7 +181,7 @@ impl Plan {
                 _ => (time_by_magnitude(column), ", by its values"),
             };
             if options.table.time.is_none() || !said.is_empty() {
-                let unit = if column.numbers.is_empty() { "dates or times of day" } else { unit.name() };
+                let unit = if column.numbers.is_empty() { "dates or times of day" } else { unit.said().0 };
                 self.guesses.push(guess(
                     "time",
                     format!("column `{}`, {unit}{said}", column.name),

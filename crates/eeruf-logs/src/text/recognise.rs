@@ -228,18 +228,16 @@ impl Plan {
                 count => (at - count..at).map(cell).collect::<Vec<_>>().join(" "),
             };
             let is_named = |at: usize| words(at) > 0 && is_one(at);
+            let is_before =
+                (1..width).any(|at| is_value(&at) && is_named(at)) && (1..width).filter(is_value).all(is_named);
             // `40.1 cm left, 80.2 cm right`
-            let after: Vec<_> = (0..width).filter(is_value).map(|at| at + 1).collect();
-            let labels: BTreeSet<_> =
-                after.iter().filter(|&&at| at < width && is_word(at)).map(|&at| cell(at)).collect();
-            if (1..width).any(|at| is_value(&at) && is_named(at)) && (1..width).filter(is_value).all(is_named) {
-                names = (0..width).map(name).collect();
-                self.has_names = true;
-            }
-            if is_value(&0) && labels.len() == after.len() && labels.iter().all(|label| names::is_owner(label)) {
-                let name =
-                    |at: usize| if is_value(&at) { cell(at + 1).to_owned() } else { format!("column {}", at + 1) };
-                names = (0..width).map(name).collect();
+            let labels: BTreeSet<_> = (1..width).filter(|at| is_value(&(at - 1)) && is_word(*at)).map(cell).collect();
+            let is_behind = is_value(&0)
+                && labels.len() == (0..width).filter(is_value).count()
+                && labels.iter().all(|label| names::is_owner(label));
+            if is_before || is_behind {
+                let of = |at: usize| if is_behind && is_value(&at) { cell(at + 1).to_owned() } else { name(at) };
+                names = (0..width).map(of).collect();
                 self.has_names = true;
             }
         }

@@ -369,7 +369,7 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
         /// The longest pause of a sensor; after a longer one it has restarted.
         const LONGEST_PAUSE_NS: u64 = 10_000_000_000;
         let [(_, TimeUnit::Ms | TimeUnit::Us)] = self.plan.time[..] else { return ns };
-        let wrap_ns = (self.plan.time[0].1.nanoseconds() as u64) << 32;
+        let wrap_ns = (self.plan.time[0].1.said().1 as u64) << 32;
         let (at, latest) = (ns.saturating_add(self.wrapped_ns), self.counted_ns);
         let pause_ns = at.saturating_add(wrap_ns).checked_sub(latest);
         if at < latest && pause_ns.is_some_and(|ns| ns < LONGEST_PAUSE_NS) {
@@ -472,7 +472,7 @@ fn short(text: &str) -> String {
 }
 
 fn time_ns(text: &str, unit: TimeUnit, decimal_comma: bool) -> Option<u64> {
-    let scale = unit.nanoseconds();
+    let scale = unit.said().1;
     // Whole nanoseconds since 1970 do not fit into a float.
     if let Ok(whole) = text.parse::<u64>() {
         return whole.checked_mul(scale as u64);

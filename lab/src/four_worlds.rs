@@ -1,5 +1,4 @@
-//! Set I and Set II in four worlds, flat or in a room, with the constant gain or with the Polaroid's own: a table for
-//! each.
+//! Set I in four worlds, flat or in a room, with the constant gain or with the Polaroid's own.
 //!
 //! ```text
 //! cargo lab four-worlds [interference]
@@ -8,7 +7,6 @@
 //! With `interference` sounds within a burst of each other add.
 
 use eeruf_sim::experiments::set_one::{SetOneOptions, set_one};
-use eeruf_sim::experiments::set_two::{SetTwoOptions, set_two};
 use eeruf_sim::*;
 
 const METHODS: [Method; 5] = [Method::Sequential, Method::Conventional, Method::Eeruf, Method::Flow, Method::MultiEcho];
@@ -19,7 +17,6 @@ const WORLDS: [(&str, Option<Room>, GainProfile); 4] = [
     ("room, polaroid_6500", Some(Room::DEFAULT), GainProfile::Polaroid6500),
 ];
 const ALCOVES: u64 = 100;
-const COURSES: u64 = 60;
 
 /// Prints a table with a row for each method and a column for each world.
 fn table(columns: &[Vec<String>]) {
@@ -37,7 +34,6 @@ pub(crate) fn main(arguments: &[String]) -> crate::Answer {
     let interference = arguments.first().is_some_and(|word| word == "interference");
     let physics = Physics { interference, ..Physics::DEFAULT };
     let mut alcoves = Vec::new();
-    let mut courses = Vec::new();
     for (_, room, gain) in WORLDS {
         let transducer = Transducer { gain, ..Transducer::POLAROID_6500 };
         let methods = Entry::all(METHODS);
@@ -49,21 +45,8 @@ pub(crate) fn main(arguments: &[String]) -> crate::Answer {
             format!("{} / {}", percent(wrong), percent(lost))
         };
         alcoves.push(found.methods.iter().map(|(_, figures)| cell(figures)).collect());
-        let methods = Entry::all(METHODS);
-        let asked = SetTwoOptions { seeds: COURSES, methods, room, gain, physics, ..SetTwoOptions::default() };
-        let found = set_two(&asked, &|_| true)?;
-        let cell = |figures: &experiments::set_two::Figures| {
-            format!(
-                "{}, {:.2}",
-                percent(Some(figures.finished as f64 / figures.courses as f64)),
-                figures.mean_speed_m_s
-            )
-        };
-        courses.push(found.methods.iter().map(|(_, figures)| cell(figures)).collect());
     }
     println!("Set I, {ALCOVES} alcoves: wrong, % of all / good lost %, medians:\n");
     table(&alcoves);
-    println!("Set II, {COURSES} courses: finished %, mean m/s:\n");
-    table(&courses);
     Ok(())
 }

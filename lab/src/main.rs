@@ -49,7 +49,7 @@ const COMMANDS: [Command; 17] = [
         "flow beside one by one, with and without a median",
         flow_tables::main,
     ),
-    ("four-worlds", "[interference]", "Sets I and II, flat and in a room, with two gains", four_worlds::main),
+    ("four-worlds", "[interference]", "Set I, flat and in a room, with two gains", four_worlds::main),
     (
         "measure",
         "RING.toml .. [--first N] [--places N] [--choose N] [--csv FILE] [--planted BLOCKS]",

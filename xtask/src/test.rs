@@ -55,7 +55,7 @@ pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
         });
     }
     steps.step("public items", crate::api::api);
-    steps.step("tests and doctests", || run_line("cargo test --workspace --locked"));
+    steps.step("tests and doctests", || run_line("cargo test --workspace --locked --no-fail-fast"));
     // With the features of the whole workspace, as built for the tests.
     steps.step("benches, each once", || {
         run_line(

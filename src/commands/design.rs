@@ -173,7 +173,7 @@ struct Answered<'a> {
     rooms: Option<RoomsOrNot<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     how: Option<How>,
-    /// How soon the way sees what appears, and how often it stops for nothing.
+    /// Times until the way sees what appears, and its false stops.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     conditions: Vec<UnderCondition>,
     /// Pairs of neighbours, by number, that do not hear each other in their places.

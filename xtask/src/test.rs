@@ -64,10 +64,10 @@ pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
         )
     });
     steps.step("small tables in the documents", || printed::check(&printed::documents()?, printed::Which::Small));
-    steps.step("tests of the core's conversions and formats", || {
+    steps.step("tests of features: conversions, formats, awaiting", || {
         run_line(
-            "cargo test --package eeruf-core --lib --test formats --locked \
-             --features defmt,embassy-time,fugit,serde -- interop serde format",
+            "cargo test --package eeruf-core --package eeruf-hc-sr04 --lib --test formats --test awaited --locked \
+             --features defmt,embassy-time,fugit,serde,async -- interop serde format next_reads",
         )
     });
     steps.step("Python package", crate::python::python);

@@ -6,6 +6,7 @@ use eeruf_core::{Micros, RingError};
 
 /// Reason why a ring of sensors cannot be set up.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum SetupError {
     /// A sensor would be triggered again too soon.

@@ -4,6 +4,7 @@ use core::fmt;
 
 /// The health of a sensor.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Health {
     /// The line answers, or it has been triggered too seldom to know.

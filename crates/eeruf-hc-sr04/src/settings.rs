@@ -7,6 +7,7 @@ use crate::error::SetupError;
 
 /// Times and limits of the sensors.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub struct Settings {
     /// Width of the trigger's pulse.

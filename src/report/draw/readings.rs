@@ -43,7 +43,8 @@ pub(crate) fn readings_over_time(
         let x_of = |s: f64| LEFT + (s - from_s) / (to_s - from_s) * (WIDTH - LEFT - RIGHT);
         let y_of = |us: f64| top + HEIGHT * (1.0 - us * metres_per_us / most_m);
         axes(&mut picture, top, most_m, (from_s, to_s));
-        picture.text(readings.method.to_string(), (LEFT + 6.0, top - 11.0), CAPTION);
+        let title = format!("{}; at the upper edge: nothing heard", readings.method);
+        picture.text(title, (LEFT + 6.0, top - 11.0), CAPTION);
         let own = of_sensor(readings);
         for pair in own.windows(2) {
             let [a, b] = [readings.reference_us[pair[0]], readings.reference_us[pair[1]]];

@@ -18,31 +18,28 @@ const SHOWN_READINGS: usize = 70;
 pub(crate) fn pictures(folder: &Path, ending: &str, world: &World, study: &Study) -> Result<usize, InputError> {
     let file = |name: &str| folder.join(name).with_extension(ending);
     comparison(study, &file("methods"))?;
-    let mut drawn = 1;
     // Before and after, where both were simulated; or what there is.
     let before = study.of(Method::Conventional).or_else(|| study.runs.first());
-    let after = study.of(Method::Eeruf).or_else(|| study.of(Method::EerufBest)).or_else(|| study.runs.last());
-    let (Some(before), Some(after)) = (before, after) else { return Ok(drawn) };
+    let known = [Method::Flow, Method::Eeruf, Method::EerufBest];
+    let after = known.into_iter().find_map(|method| study.of(method)).or_else(|| study.runs.last());
+    let (Some(before), Some(after)) = (before, after) else { return Ok(1) };
     let shown: Vec<&Readings> = if before.method == after.method { vec![after] } else { vec![before, after] };
     let panels: Vec<Panel> = shown.iter().map(|readings| panel(world, readings)).collect();
     draw::scene_with_paths(world, &panels).save(&file("scene"))?;
-    drawn += 1;
 
     let (robot, sensor) = most_helped(before, after);
-    let Some(body) = world.robots().get(robot) else { return Ok(drawn) };
+    let Some(body) = world.robots().get(robot) else { return Ok(2) };
     let alone: Vec<Readings> = shown.iter().map(|readings| of_robot(readings, robot, body.sensors.len())).collect();
-    if let Some(after) = alone.last() {
-        let window_s = 1e-6 * f64::from(body.window.as_micros());
-        draw::two_periods(after, robot as u16, body.sensors.len(), window_s).save(&file("timing"))?;
-        let stretch = richest_stretch(after, sensor);
-        let metres_per_us = 0.5e-6 * world.scene().air().speed_of_sound();
-        let alone: Vec<&Readings> = alone.iter().collect();
-        draw::readings_over_time(&alone, sensor, stretch, metres_per_us, TOLERANCE_US).save(&file("readings"))?;
-        drawn += 2;
-    }
+    let after = &alone[alone.len() - 1];
+    let window_s = 1e-6 * f64::from(body.window.as_micros());
+    draw::two_periods(after, robot as u16, body.sensors.len(), window_s).save(&file("timing"))?;
+    let stretch = richest_stretch(&alone[0], after, sensor);
+    let metres_per_us = 0.5e-6 * world.scene().air().speed_of_sound();
+    let alone: Vec<&Readings> = alone.iter().collect();
+    draw::readings_over_time(&alone, sensor, stretch, metres_per_us, TOLERANCE_US).save(&file("readings"))?;
     let lane = |run: &Readings| (run.method, right_shares(&of_robot(run, robot, body.sensors.len())));
     draw::blind_sensors(&study.runs.iter().map(lane).collect::<Vec<_>>()).save(&file("blind"))?;
-    Ok(drawn + 1)
+    Ok(5)
 }
 
 /// Draws what each method reads into this file.
@@ -104,36 +101,41 @@ fn corners(world: &World, readings: &Readings, index: u32, path: &HeardPath) -> 
 /// The robot and the sensor that one method fooled most and farthest; the other method must have accepted some of that
 /// sensor's readings, or there is little to see.
 fn most_helped(before: &Readings, after: &Readings) -> (usize, u8) {
-    let mut scores = BTreeMap::new();
-    for reading in (0..before.len()).filter(|&reading| before.is_accepted(reading)) {
+    let mut scores = BTreeMap::<SensorId, [f64; 2]>::new();
+    for reading in (0..before.len()).filter(|&reading| is_fooled(before, reading)) {
         let off_us = (before.t_echo_us[reading] - before.reference_us[reading]).abs();
-        let foreign = matches!(before.cause[reading], Cause::Crosstalk | Cause::Stale | Cause::External);
-        if foreign && off_us > TOLERANCE_US {
-            scores.entry(before.id(reading)).or_insert((0.0, 0.0)).0 += off_us;
-        }
+        // Where it would read nothing alone, all of the range is wrong.
+        scores.entry(before.id(reading)).or_default()[0] += if off_us.is_nan() { 2e4 } else { off_us };
     }
     for reading in (0..after.len()).filter(|&reading| after.is_accepted(reading)) {
-        if let Some(score) = scores.get_mut(&after.id(reading)) {
-            score.1 += 1.0;
-        }
+        scores.entry(after.id(reading)).or_default()[1] += 1.0;
     }
-    let score = |&(_, (off, believed)): &(SensorId, (f64, f64))| off * believed;
+    let score = |&(_, [off, believed]): &(SensorId, [f64; 2])| off * believed;
     let most = scores.into_iter().max_by(|a, b| score(a).total_cmp(&score(b)));
     most.map_or((0, 0), |(id, _)| (usize::from(id.robot), id.sensor))
 }
 
-/// Returns the stretch of a sensor's readings that shows most: accepted and rejected ones are most balanced there.
-fn richest_stretch(readings: &Readings, sensor: u8) -> (f64, f64) {
-    let own: Vec<usize> = (0..readings.len()).filter(|&reading| readings.sensor[reading] == sensor).collect();
-    let mixed = |stretch: &[usize]| {
-        let accepted = stretch.iter().filter(|&&reading| readings.is_accepted(reading)).count();
-        accepted.min(stretch.len() - accepted)
+/// Returns true for another's sound that is believed.
+fn is_fooled(of: &Readings, reading: usize) -> bool {
+    let is_foreign = matches!(of.cause[reading], Cause::Crosstalk | Cause::Stale | Cause::External);
+    of.is_accepted(reading) && is_foreign && of.is_wrong(reading, TOLERANCE_US)
+}
+
+/// Returns the stretch of a sensor's readings that shows most: one method is fooled, and of what the other reads there,
+/// accepted and rejected are most balanced.
+fn richest_stretch(before: &Readings, after: &Readings, sensor: u8) -> (f64, f64) {
+    let own: Vec<usize> = (0..after.len()).filter(|&reading| after.sensor[reading] == sensor).collect();
+    let fooled = (0..before.len()).filter(|&reading| before.sensor[reading] == sensor && is_fooled(before, reading));
+    let times: Vec<f64> = fooled.map(|reading| before.fired_s[reading]).collect();
+    let end = |reading: Option<&usize>| reading.map_or(0.0, |&reading| after.fired_s[reading]);
+    let shows = |stretch: &[usize]| {
+        let span = end(stretch.first())..end(stretch.last());
+        let accepted = stretch.iter().filter(|&&reading| after.is_accepted(reading)).count();
+        let wrong = times.iter().filter(|time| span.contains(time)).count();
+        (wrong.min(SHOWN_READINGS / 4), accepted.min(stretch.len() - accepted))
     };
     let stretches = own.chunks(SHOWN_READINGS).filter(|stretch| stretch.len() == SHOWN_READINGS);
     // The first of equals.
-    let best = stretches.rev().max_by_key(|stretch| mixed(stretch)).unwrap_or(&own);
-    match best {
-        [first, .., last] => (readings.fired_s[*first] - 0.05, readings.fired_s[*last] + 0.05),
-        _ => (0.0, readings.duration_s.max(1e-3)),
-    }
+    let best = stretches.rev().max_by_key(|stretch| shows(stretch)).unwrap_or(&own);
+    (end(best.first()) - 0.05, end(best.last()) + 0.05)
 }

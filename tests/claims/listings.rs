@@ -52,7 +52,7 @@ fn listings(document: &str) -> Vec<Listing> {
 }
 
 /// Beginnings of commands that other tests run or that need missing tools, each with the file that runs it.
-const ELSEWHERE: [(&str, &str); 12] = [
+const ELSEWHERE: [(&str, &str); 15] = [
     ("cargo xtask test", "xtask/src/test.rs"),
     ("cargo install --path crates/eeruf-ros2", "xtask/src/ros2.rs"),
     ("pip install .", "xtask/src/python.rs"),
@@ -62,9 +62,12 @@ const ELSEWHERE: [(&str, &str); 12] = [
     ("ros2 ", "tests/ros2/test_launched.py"),
     ("sudo", "xtask/src/deb.rs"),
     ("eeruf-ros2 --gpio", "crates/eeruf-ros2/src/gpio.rs"),
-    ("eeruf-ros2 --simulate", "tests/ros2/test_simulated.py"),
     ("eeruf-ros2 --no-ros", "tests/ros2/test_mavlink.py"),
-    ("eeruf-ros2 --p", "tests/ros2/test_node.py"),
+    ("eeruf-ros2 --", "tests/ros2/test_node.py"),
+    ("rustup target add ", "xtask/src/examples.rs"),
+    ("cp -r ~/eeruf/examples/", "xtask/src/examples.rs"),
+    ("sed -i ", "xtask/src/examples.rs"),
+    ("cargo build --release", "xtask/src/examples.rs"),
 ];
 
 /// Parts of commands that take minutes, and shorter replacements.

@@ -220,7 +220,10 @@ const REFUSED_RUNS: [(&[&str], &str); 95] = [
     (&["diagnose", "none.csv"], "none.csv: No such file"),
     (&["logs", "log.csv", "--no-echo-m", "-1"], "--no-echo-m: `-1`; expected no negative number"),
     (&["logs", "log.csv", "--field", "/s", "f"], "--field: 2 values; expected 3"),
-    (&["logs", "log.csv", "--field", "/s", "f", "h"], "--field: /s: unit `h`; expected m, cm, mm, in, ft or us"),
+    (
+        &["logs", "log.csv", "--field", "/s", "f", "h"],
+        "--field: /s: unit `h`; expected one of m, cm, mm, in, ft, ms, us",
+    ),
     (&["logs", "none.csv"], "none.csv: No such file or directory (os error 2); expected a file that exists"),
     (&["diagnose", "log.csv", "--speed-of-sound", "nan"], "--speed-of-sound: `nan`; expected a number above zero"),
     (&["survey", "log.csv"], "log.csv: no column `sensor`; expected sensor, fired_us"),

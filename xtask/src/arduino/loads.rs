@@ -254,7 +254,7 @@ pub(super) fn run(library: &Path, newping: Option<&Path>, all: bool) -> Result<(
     let mut sketches = vec![];
     for modules in RINGS {
         let mut of_ring = vec![];
-        for wait_ms in newping.iter().flat_map(|_| [10, 29]) {
+        for wait_ms in newping.iter().flat_map(|_| [0, 5, 10, 29]) {
             let (sources, version) = newping::sources(newping.unwrap_or(library))?;
             let defines = ["-w", &format!("-DMODULES={modules}"), &format!("-DWAIT_MS={wait_ms}")];
             let name = format!("NewPing{modules}Waits{wait_ms}");

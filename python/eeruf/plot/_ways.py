@@ -26,7 +26,8 @@ def sensor_places(robot: Robot) -> NDArray[np.float64]:
 
 def way(scene: Scene, heard: HeardPaths, path: int) -> NDArray[np.float64] | None:
     """Return the corners of the path of some reading, shape (n, 2), emitter first; None if its robots stood
-    elsewhere."""
+    elsewhere.
+    """
     ends = []
     for robot, sensor in (("emitter_robot", "emitter"), ("receiver_robot", "receiver")):
         number = int(heard[robot][path])  # type: ignore[literal-required]

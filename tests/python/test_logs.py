@@ -372,8 +372,9 @@ def test_ten_million_readings_of_a_server_take_little_memory() -> None:
         assert said["table"]["accepted"] == readings // 2 and said["table"]["damage"] == said["mcap"]["damage"] == []
         # MCAP has ranges as floats of 32 bits.
         assert said["mcap"]["metres"] == pytest.approx(said["table"]["metres"], rel=1e-6)
-    # Neither takes more than 200 MB, or the script fails.
-    assert found[1]["largest_mb"] < 1.2 * found[0]["largest_mb"]
+    # Neither takes more than 200 MB, or the script fails. A reading kept in 8 bytes would take 72 MB more; how many
+    # blocks wait for the reader, some 25 MB, depends on the machine's load.
+    assert found[1]["largest_mb"] < 50 + found[0]["largest_mb"]
 
 
 def far_log(readings: int) -> Any:

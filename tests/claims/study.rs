@@ -129,9 +129,9 @@ fn pictures_are_drawn_and_say_what_they_show() {
     assert!(outcome.out.contains("5 pictures in "), "{}", outcome.out);
     let picture = |name: &str| std::fs::read_to_string(made.join(name)).unwrap();
     for (name, says) in [
-        ("scene.svg", vec!["conventional", "eeruf", "sound sent by sensor", "wrong readings believed", " m\n"]),
-        ("timing.svg", vec!["eeruf: two periods as they happened", "crosstalk, rejected", "time, ms"]),
-        ("readings.svg", vec!["What sensor ", "range, m", "time, s", "rejected"]),
+        ("scene.svg", vec!["conventional", "flow", "sound sent by sensor", "wrong readings believed", " m\n"]),
+        ("timing.svg", vec!["flow: two periods as they happened", "crosstalk, rejected", "time, ms"]),
+        ("readings.svg", vec!["What sensor ", "range, m", "time, s", "rejected", "upper edge"]),
         ("methods.svg", [&methods()[..], &["good lost", "readings a second"]].concat()),
         ("blind.svg", [&methods()[..], &["Blind sensors (red)", "flow is the way recommended"]].concat()),
     ] {
@@ -141,8 +141,9 @@ fn pictures_are_drawn_and_say_what_they_show() {
             assert!(svg.contains(said), "{name}: {said}");
         }
     }
-    // Arrow heads: more paths fool someone without EERUF than with it, but some with it too.
-    assert!(picture("scene.svg").matches("<polygon").count() > 16 + 4);
+    // A cone for each sensor in either panel, and arrow heads of the paths that fool someone: four, and none by flow.
+    assert_eq!(picture("scene.svg").matches("<polygon").count(), 16 + 4);
+    assert!(picture("scene.svg").contains("of what it believes (0 of "));
 }
 
 #[test]

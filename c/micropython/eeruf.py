@@ -206,8 +206,7 @@ class FlowRing:
             self._due = due
 
     def upcoming(self):
-        """Return the next firing as a list of one (sensor, instant), for hardware that fires by itself; empty if the
-        round ends first."""
+        """Return a list of the next (sensor, instant), for hardware that fires by itself; empty if the round ends first."""
         return [] if self._next == NOBODY else [(self._next, self._due)]
 
     def _set_moves(self):  # takes in the rate that holds now
@@ -227,7 +226,7 @@ class FlowRing:
         return max(self._before, self._greatest)
 
     def moving(self, speed_mm_s, turn_mrad_s, now_us):
-        """Reports how fast the robot moves and turns, once a control cycle. After half a second without: top speed."""
+        """Report how fast the robot moves and turns, once a control cycle. After half a second without: top speed."""
         if not self._reached(now_us, self._since):  # the first word of a clock in its upper half, or one that has jumped
             self._since, self._before, self._greatest = now_us, max(self._before, self._greatest), 0
         recent = self._recent(now_us)
@@ -456,8 +455,7 @@ class FlowRing:
         return self._long_ago < (now_us - at_us) & self._mask <= self._mask - self._step_back
 
     def echo(self, x, earliest_us, latest_us=None):
-        """Report an echo at an instant, or between two: the middle counts. If it may be off by more than 300 us, 5 cm,
-        it is LATE, without a time."""
+        """Report an echo at an instant, or between two: the middle counts. If 300 us (5 cm) do not reach both, it is LATE."""
         sensor, flow, latest_us = self._sensors[x], self.flow, earliest_us if latest_us is None else latest_us
         width = (latest_us - earliest_us) & self._mask
         if width >= self._half:
@@ -527,8 +525,7 @@ class FlowRing:
         self._show(x, _STUCK)
 
     def holds(self, x):
-        """Report that a sensor holds its line: it rose after the trigger, or is still high. Its silence counts once,
-        when the line has fallen: `answered`."""
+        """Report that a line rose after the trigger, or is still high. Its silence counts when it has fallen: `answered`."""
         self._show(x, _HELD)
 
     def answered(self, x, answered=True):
@@ -542,8 +539,7 @@ class FlowRing:
                 self._judge(x, sensor, None, sensor.firings[0])  # its reading is out
 
     def measured(self, x, least_us, most_us=None):
-        """Takes what hardware measured of a sensor's last firing: the echo time, two values around it, or None for
-        silence."""
+        """Take what hardware measured of the last firing: the echo time, two values around it, or None for silence."""
         if least_us is None:
             self.answered(x)
         else:
@@ -696,8 +692,7 @@ class HcSr04FlowRing:
         return event
 
     def too_slow(self):
-        """Return true about once a second if `read` is called too seldom: a module had no two readings in a row that
-        are not late."""
+        """Return true about once a second if `read` is called too seldom: a module had no two timely readings in a row."""
         now, twice = self._time.ticks_us(), self._twice
         if self._time.ticks_diff(now, self._since) < 950000:
             return False

@@ -1,4 +1,4 @@
-//! Input that is legal and implausible: milliseconds for microseconds, centimetres for metres.
+//! Input that is legal but implausible: milliseconds for microseconds, centimetres for metres.
 
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -77,8 +77,8 @@ pub fn doubted_keys() -> impl Iterator<Item = &'static str> {
     PLAUSIBLE.iter().map(|plausible| plausible.key)
 }
 
-/// Returns a warning for every key of a TOML text with an implausible value: the first, and the number of others. None
-/// for a text that is no TOML.
+/// Returns one warning for each key that has implausible values in a TOML text: the first such value, and the number of
+/// others. Empty for text that is not TOML.
 ///
 /// ```
 /// let warnings = eeruf_files::doubts_in("# a ring\nwindow_us = 30");
@@ -142,7 +142,7 @@ fn in_value(key: &str, at: usize, value: &Spanned<DeValue<'_>>, found: &mut Vec<
     }
 }
 
-/// Warns of a spacing that puts sensors into one place, or that is probably in radians.
+/// Warns of a spacing that puts several sensors in one place, or that is probably in radians.
 fn spacing(table: &DeTable<'_>, at: usize, found: &mut Vec<(usize, String)>) {
     let of = |key: &str| table.get(key).and_then(|value| number(value.get_ref()));
     let (Some(spacing), Some(sensors)) = (of("spacing_deg"), of("sensors")) else { return };
@@ -160,7 +160,7 @@ fn spacing(table: &DeTable<'_>, at: usize, found: &mut Vec<(usize, String)>) {
     }
 }
 
-/// Returns the value, the plausible ones and the likely cause, if the value of a key is implausible.
+/// Returns a message if the value of a key is implausible: the value, the plausible ones and the likely cause.
 ///
 /// ```
 /// assert_eq!(eeruf_files::doubt("t_delta_us", 500.0), None);
@@ -179,7 +179,7 @@ pub fn doubt(key: &str, number: f64) -> Option<String> {
     (!is_plausible).then(|| format!("{shown}; expected {from} to {to}; {why}"))
 }
 
-/// Returns true for an angle that is likely in radians: a multiple of 15 degrees up to the full circle, if it is.
+/// Returns true if an angle is likely in radians: converted to degrees it is a multiple of 15, up to a full circle.
 ///
 /// ```
 /// use eeruf_files::is_likely_rad;
@@ -191,7 +191,7 @@ pub fn is_likely_rad(angle: f64) -> bool {
     (0.5..24.5).contains(&of_15_degrees) && (of_15_degrees - libm::round(of_15_degrees)).abs() < 0.02
 }
 
-/// Like [`doubt`], for a list: firing times and waits are implausible only if all of them are small.
+/// Applies [`doubt`] to a list: firing times and waits are implausible only if all of them are small.
 ///
 /// ```
 /// assert_eq!(eeruf_files::doubt_list("t_lag_us", &[0.0, 15_000.0]), None);

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::FileError;
 
-/// The size from which on a file is refused; some, such as `/dev/zero`, never end.
+/// The size in bytes at which a file is refused; some, such as `/dev/zero`, never end.
 const TOO_LARGE: u64 = 1 << 26;
 
 /// A kind of file that a command of `eeruf` reads.
@@ -31,7 +31,7 @@ impl Kind {
     pub fn of(file: &Path, text: &str) -> Option<Self> {
         match file.extension().map(|ending| ending.to_string_lossy().to_lowercase()).as_deref() {
             Some("csv" | "mcap" | "bag" | "db3") => return Some(Self::Log),
-            // Messages are printed as YAML too.
+            // Only a map is recognised: ROS messages are printed as YAML too.
             Some("yaml" | "yml") => {
                 let is_map = text.lines().any(|line| line.starts_with("image:") || line.starts_with("resolution:"));
                 return is_map.then_some(Self::Map);
@@ -107,9 +107,9 @@ impl Kind {
     /// Reads a text file of this kind.
     ///
     /// # Errors
-    /// The file cannot be read, is no text, or is certainly of another kind.
+    /// The file cannot be read, is not text, or is certainly of another kind.
     pub fn read(self, file: &Path) -> Result<String, FileError> {
-        // The name of a log says what it is, and not every log is text.
+        // A log is recognised by its name: not every log is text.
         self.expect(file, "")?;
         let text = read_text(file).map_err(|error| FileError::reading(file, &error))?;
         self.expect(file, &text)?;
@@ -119,7 +119,7 @@ impl Kind {
     /// Refuses a TOML file or a map where a log is expected.
     ///
     /// # Errors
-    /// The file cannot be read, or the kind found and the command that reads it.
+    /// The file does not exist, or is of another kind; the message names the command that reads that kind.
     pub fn expect_log(file: &Path) -> Result<(), FileError> {
         if file.as_os_str() == "-" {
             return Ok(());

@@ -1,9 +1,9 @@
 //! Errors in the files of eeruf: the file, the place in it, then `thing: value; expected X`, in one line.
 //!
 //! The program, the libraries and the Python package report errors in files by the one type [`FileError`]. [`Kind`]
-//! recognises a file before it is parsed; with the feature `toml`, `parse` reads TOML, `doubts_in` finds values in it
-//! that are legal and implausible, `ScheduleFile` is a schedule in a file and `RobotRing` what a scene takes from a
-//! ring file; with `emit`, the module `emit` writes a ring as source text for firmware.
+//! recognises a file before it is parsed. The feature `toml` adds `parse` for TOML, `doubts_in` for legal but
+//! implausible values, `ScheduleFile` for a schedule and `RobotRing` for the parts of a ring file that a scene uses.
+//! The feature `emit` adds the module `emit`, which writes a ring as source text for firmware.
 
 #[cfg(feature = "emit")]
 pub mod emit;

@@ -9,7 +9,7 @@ use toml::de::{DeTable, DeValue};
 use crate::error::FileError;
 use crate::meant::meant;
 
-/// Rust's names of types, and the words a user knows for them.
+/// Rust's type names, and the words that messages use for them.
 const TYPES: [(&str, &str); 6] = [
     ("a sequence", "a list"),
     ("usize", "a whole number from 0 on"),
@@ -94,10 +94,10 @@ fn syntax(line: &str, error: &str) -> Option<String> {
     }
 }
 
-/// Reads a TOML text and builds its meaning.
+/// Reads a TOML text and passes it to a builder.
 ///
 /// # Errors
-/// Those of [`parse`], or the builder's message, at the line of the first key that it names.
+/// The error of [`parse`], or the builder's message, at the line of the first key that it names.
 ///
 /// ```
 /// #[derive(serde::Deserialize)]
@@ -128,12 +128,12 @@ pub(crate) fn line_at(text: &str, byte: usize) -> u64 {
     1 + text.get(..byte).map_or(0, |before| before.matches('\n').count() as u64)
 }
 
-/// The error in a value of TOML that was parsed before, as `thing: value; expected X`.
+/// Returns the error in a TOML value that was parsed before, as `thing: value; expected X`.
 pub fn explain(error: &toml::de::Error) -> String {
     message(None, "", error.message())
 }
 
-/// The error in a JSON text, in the words of its parser, `what at line N column M`.
+/// Returns the error in a JSON text from its parser's message, `what at line N column M`.
 ///
 /// ```
 /// let error = eeruf_files::explain_json("missing field `period_us` at line 1 column 2");
@@ -182,7 +182,7 @@ fn message(key: Option<&str>, found: &str, error: &str) -> String {
         let place = key.map_or(String::new(), |key| format!(" in {key}"));
         return format!("{0}: missing{place}; expected `{0} = ..`", bare(name));
     }
-    // Of a value that fits none of several types the parser names the types alone.
+    // If a value fits none of several types, the parser names only the types.
     if let Some(expected) = error.strip_prefix("expected ").filter(|_| !found.is_empty() && !found.contains('\n')) {
         return format!("{}`{found}`; expected {expected}", key.map_or(String::new(), |key| format!("{key}: ")));
     }
@@ -212,7 +212,7 @@ fn message(key: Option<&str>, found: &str, error: &str) -> String {
         expected => format!("; expected {expected}"),
     };
     let key = key.map_or(String::new(), |key| format!("{key}: "));
-    // An error of the libraries about a value may name its key.
+    // A library's error about a value may already begin with its key.
     format!("{}{found}{expected}", if found.starts_with(&key) { "" } else { &key })
 }
 

@@ -28,9 +28,9 @@ pub fn arc(sensors: usize, radius_m: f64, first_rad: f64, spacing_rad: f64) -> i
 pub struct RobotRing {
     /// Number of sensors, 1 to 64.
     pub sensors: usize,
-    /// Position of each on the robot; empty if the file does not say it.
+    /// Position of each sensor on the robot; empty if the file gives none.
     pub poses: Vec<Pose>,
-    /// Height of each above the floor in metres; empty if the file does not say it.
+    /// Height of each sensor above the floor in metres; empty if the file gives none.
     pub heights_m: Vec<f64>,
     /// The module of each sensor; empty if the file names none.
     pub modules: Vec<Module>,

@@ -6,9 +6,9 @@ fn between(one: f32, other: f32) -> f32 {
     apart.min(360.0 - apart)
 }
 
-/// The `MAV_SENSOR_ORIENTATION`, 0 to 7, of a sensor among others, in degrees clockwise from ahead. `None` if no value
-/// fits, or if another sensor looks into the same 45 degrees: `ArduPilot` keeps one distance for them, and each
-/// `DISTANCE_SENSOR` would replace what `OBSTACLE_DISTANCE` said.
+/// Returns the `MAV_SENSOR_ORIENTATION`, 0 to 7, of one sensor, given all directions in degrees clockwise from ahead.
+/// `None` if no value fits, or if another sensor faces the same 45 degrees: `ArduPilot` keeps one distance for each
+/// eighth, so each `DISTANCE_SENSOR` would replace the value from `OBSTACLE_DISTANCE`.
 pub fn rotation(yaws_deg: &[f32], sensor: usize) -> Option<u8> {
     let eighth = (yaws_deg.get(sensor)? / 45.0).round();
     let named = |yaw| between(yaw, 45.0 * eighth);

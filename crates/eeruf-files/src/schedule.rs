@@ -86,7 +86,7 @@ pub mod as_file {
     /// Writes the keys of a file.
     ///
     /// # Errors
-    /// Those of the serializer.
+    /// Errors of the serializer.
     pub fn serialize<S: Serializer>(schedule: &AnySchedule, serializer: S) -> Result<S::Ok, S::Error> {
         ScheduleFile::from(schedule).serialize(serializer)
     }
@@ -94,7 +94,7 @@ pub mod as_file {
     /// Reads a schedule.
     ///
     /// # Errors
-    /// Those of [`ScheduleFile::schedule`], and those of the deserializer.
+    /// Errors of [`ScheduleFile::schedule`] and of the deserializer.
     pub fn deserialize<'de, D: Deserializer<'de>>(deserializer: D) -> Result<AnySchedule, D::Error> {
         ScheduleFile::deserialize(deserializer)?.schedule().map_err(D::Error::custom)
     }

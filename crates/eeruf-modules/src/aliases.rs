@@ -1,11 +1,11 @@
-//! Names of modules that are no preset: those that answer as one does, and those that no ring can fire.
+//! Names of modules that are not presets: some behave like a preset, others cannot be fired in a ring.
 
 use crate::module::Module;
 use crate::presets::{HC_SR04, JSN_SR04T, MB1010, MB1242, PING, POLAROID_6500, find};
 
 /// Modules that trigger, answer and rest like a preset, under their common names.
 const LIKE: [(&[&str], &Module); 6] = [
-    // The same board for 3.3 V, and others of its protocol: 10 us of trigger, the pulse of the echo.
+    // Versions for 3.3 V and boards with the same protocol: a trigger of 10 us, then the echo pulse.
     (
         &[
             "hcsr04",
@@ -23,7 +23,7 @@ const LIKE: [(&[&str], &Module); 6] = [
         ],
         &HC_SR04,
     ),
-    // In the mode in which they are sold.
+    // These answer like the preset in their factory mode.
     (&["jsnsr04t", "jsn-sr04", "jsn-sr04t-2.0", "jsn-sr04m", "aj-sr04m", "ajsr04m", "sr04t"], &JSN_SR04T),
     (&["ping)))", "parallax-ping", "28015"], &PING),
     (&["lv-ez1", "lv-maxsonar", "maxsonar", "mb1000", "mb1020", "mb1030", "mb1040"], &MB1010),
@@ -31,7 +31,7 @@ const LIKE: [(&[&str], &Module); 6] = [
     (&["polaroid", "6500", "senscomp", "senscomp-6500"], &POLAROID_6500),
 ];
 
-/// Modules that no ring can fire, or only with help, and what to do instead.
+/// Modules that a ring cannot fire, or only with help, and the alternative.
 const OTHER: [(&[&str], &str); 3] = [
     (
         &["me007ys", "a01nyub", "a0221", "dyp-a02", "sen0208", "mb1240", "mb7389", "urm37", "urm09"],
@@ -52,7 +52,7 @@ fn is(known: &[&str], name: &str) -> bool {
     known.iter().any(|known| known.bytes().eq(name.bytes().map(plain)))
 }
 
-/// Returns the preset that a module of this name, which is no preset, behaves like. Tell the user of it.
+/// Returns the preset that a module behaves like; `None` for the name of a preset itself. Tell the user about it.
 ///
 /// ```
 /// assert_eq!(eeruf_modules::like("HCSR04").map(|module| module.name), Some("hc-sr04"));
@@ -65,7 +65,7 @@ pub fn like(name: &str) -> Option<&'static Module> {
     LIKE.iter().find(|(known, _)| is(known, name)).map(|&(_, module)| module)
 }
 
-/// Returns an explanation for a module of this name that behaves like no preset.
+/// Returns an explanation for a module that behaves like no preset.
 pub(crate) fn why_not(name: &str) -> Option<&'static str> {
     OTHER.iter().find(|(known, _)| is(known, name)).map(|&(_, why)| why)
 }

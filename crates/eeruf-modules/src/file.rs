@@ -26,10 +26,10 @@ pub enum ModulesFile {
 }
 
 impl ModulesFile {
-    /// The module of each of this many sensors.
+    /// Returns one module for each of `sensors` sensors.
     ///
     /// # Errors
-    /// A list of another length.
+    /// The list has another length.
     pub fn list(&self, sensors: usize) -> Result<Vec<Module>, String> {
         match self {
             Self::All(module) => Ok(alloc::vec![*module; sensors]),
@@ -171,7 +171,7 @@ impl<'de> Deserialize<'de> for ModulesFile {
             }
 
             fn visit_seq<A: SeqAccess<'de>>(self, mut list: A) -> Result<ModulesFile, A::Error> {
-                // No ring has more; the rest is counted by whoever asks for a list.
+                // No ring has more sensors; `list` compares the length with theirs.
                 const MOST: usize = 64;
                 let mut modules = Vec::new();
                 while modules.len() < MOST {

@@ -43,13 +43,13 @@ fn polynomial(terms: &[f64], at: f64) -> f64 {
     terms.iter().rev().fold(0.0, |sum, term| sum * at + term)
 }
 
-/// Fresnel's integrals `C` and `S` from 0 to `x`, which is no less than 0 and may be infinite:
+/// Fresnel's integrals `C` and `S` from 0 to `x`, for `x >= 0`, which may be infinite:
 ///
 /// ```text
 /// C(x) + i S(x) = integral of exp(i pi t^2 / 2) from 0 to x
 /// ```
 ///
-/// With `z = pi x^2 / 2` by their power series in `z` (DLMF 7.6.4 and 7.6.6), or from `FAR` on by `f` and `g`
+/// Up to `FAR`, with `z = pi x^2 / 2`, by their power series in `z` (DLMF 7.6.4 and 7.6.6); beyond it by `f` and `g`
 /// (DLMF 7.5.3 and 7.5.4) and their asymptotic series in `1 / (2 z)` (DLMF 7.12.2 and 7.12.3). The error is below 2e-7.
 pub fn fresnel(x: f64) -> [f64; 2] {
     if x == f64::INFINITY {
@@ -87,7 +87,7 @@ mod tests {
     #[test]
     fn fresnels_integrals_are_what_quadrature_gives() {
         let mut worst: f64 = 0.0;
-        // Both series where they meet, too.
+        // The points include both sides of the border between the series.
         for x in (0..140).map(|k| 0.05 * f64::from(k)).chain([3.0 - 1e-12, 3.0 + 1e-12, 11.3]) {
             let (found, expected) = (fresnel(x), integrated(x));
             for k in 0..2 {

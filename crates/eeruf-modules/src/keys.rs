@@ -9,7 +9,7 @@ use crate::module::{Beam, Gain, Interface, Module, NoEcho};
 pub struct Key {
     /// The name.
     pub name: &'static str,
-    /// The contents.
+    /// The meaning, in a few words.
     pub about: &'static str,
     kind: Kind,
 }
@@ -41,7 +41,7 @@ impl fmt::Display for Value<'_> {
     }
 }
 
-/// Reason why a module cannot be as described.
+/// Reason why the description of a module is invalid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ModuleError<'a> {
@@ -49,23 +49,23 @@ pub enum ModuleError<'a> {
     Key(&'a str),
     /// No preset has this name.
     Name(&'a str),
-    /// A figure has a value that it cannot have.
+    /// A value is out of range for its figure, or an unknown word.
     Value {
         /// The figure.
         key: &'static str,
         /// The value.
         value: Value<'a>,
     },
-    /// A module that listens no longer than it is deaf.
+    /// The module listens no longer than it is deaf.
     Deaf {
         /// The blanking in us.
         blanking_us: u32,
-        /// Time when the echo of the farthest wall is back, in us.
+        /// Echo time of a wall at the farthest range, in us.
         range_us: u32,
     },
 }
 
-/// Writes words in a row.
+/// Writes words separated by commas.
 fn list<'a>(f: &mut fmt::Formatter<'_>, words: impl Iterator<Item = &'a str>) -> fmt::Result {
     for (index, word) in words.enumerate() {
         write!(f, "{}{word}", if index == 0 { "" } else { ", " })?;
@@ -107,7 +107,7 @@ impl fmt::Display for ModuleError<'_> {
 
 impl core::error::Error for ModuleError<'_> {}
 
-/// A number's row.
+/// Describes a figure that is a number.
 macro_rules! number {
     ($name:literal, $scale:literal, $most:literal, $field:ident, $about:literal) => {
         Key {
@@ -123,7 +123,7 @@ macro_rules! number {
     };
 }
 
-/// A word's row.
+/// Describes a figure that is a word.
 macro_rules! word {
     ($name:literal, $field:ident: $kind:ident, $names:expr, $about:literal) => {
         Key {
@@ -257,7 +257,7 @@ impl Module {
         self.sees_to_mm as f64 / 1e3
     }
 
-    /// Returns the time when the echo of a wall at its farthest range is back, in air of 20 degrees, in us.
+    /// Returns the echo time of a wall at the module's farthest range, in air of 20 degrees, in us.
     ///
     /// ```
     /// assert_eq!(eeruf_modules::HC_SR04.range_us(), 23_311);

@@ -7,7 +7,7 @@
 //! use eeruf_modules::{HC_SR04, Interface, find};
 //! assert_eq!(HC_SR04.rest_us, 60_000);
 //! assert_eq!(find("ping").map(|module| module.interface), Some(Interface::OnePin));
-//! // A module of one's own differs from one that is known.
+//! // Derive your own module from a known one.
 //! let mut mine = HC_SR04;
 //! mine.set("sees_to_m", eeruf_modules::Value::Number(2.5))?;
 //! assert_eq!(mine.sees_to_mm, 2_500);

@@ -148,17 +148,17 @@ impl NoEcho {
     }
 }
 
-/// Times by which a driver reads the line of a module that answers by a pulse as long as the echo took, in us.
+/// Times in us by which a driver reads a module that answers with a pulse as long as the echo took.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PulseTimes {
     /// Edges sooner than this after the trigger are the trigger itself, seen through the cable.
     pub deaf_us: u32,
     /// Shorter pulses are no echoes: 100 us is 17 mm, less than these modules can measure.
     pub shortest_us: u32,
-    /// A line that rises later than this was not raised by the trigger, as with swapped wires. An HC-SR04 takes half a
-    /// millisecond, so one that fires a millisecond later raises its line later than this, a choice.
+    /// A line that rises later than this was not raised by the trigger, for example if wires are swapped. An HC-SR04
+    /// takes half a millisecond, so this choice catches even one that fires a millisecond late.
     pub latest_rise_us: u32,
-    /// Pulses this long are the module's own time-out, which may be a nineteenth short: no echo.
+    /// Pulses this long or longer are the module's own time-out, which may be a nineteenth short: no echo.
     pub longest_us: u32,
     /// The longest time for which a healthy module holds its line where nothing is in range, plus a quarter.
     pub longest_hold_us: u32,
@@ -170,10 +170,10 @@ impl Module {
         2 * self.frequency_hz.abs_diff(other.frequency_hz) < self.bandwidth_hz + other.bandwidth_hz
     }
 
-    /// Returns the times by which a driver reads its line; `None` if a pulse does not end without an echo too.
+    /// Returns the times by which a driver reads the line; `None` if the module gives no pulse without an echo.
     pub const fn pulse_times(&self) -> Option<PulseTimes> {
         let NoEcho::Holds { us: hold_us } = self.no_echo else { return None };
-        // Among modules of one name there are clones.
+        // Modules sold under one name include clones.
         let longest_us = if hold_us > CLONE_HOLDS_US { hold_us } else { CLONE_HOLDS_US };
         let (longest_us, longest_hold_us) = (hold_us / 19 * 18, longest_us / 4 * 5);
         Some(PulseTimes { deaf_us: 100, shortest_us: 100, latest_rise_us: 1400, longest_us, longest_hold_us })

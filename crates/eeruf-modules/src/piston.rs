@@ -35,16 +35,16 @@ impl Piston {
     /// D = |2 J1(x) / x|,   x = k a sin(theta)
     /// ```
     ///
-    /// but not below the floor; behind 90 degrees as the [`beam`](Self::beam) says. A continuous beam multiplies the
-    /// pattern, which beyond 90 degrees stays what it is there, by what a half plane's edge at the piston's rim leaves,
-    /// relative to the axis:
+    /// but not below the floor, and behind 90 degrees according to the [`beam`](Self::beam). A continuous beam keeps
+    /// the value of 90 degrees behind, and multiplies the whole pattern by the shadow of a half plane with its edge at
+    /// the piston's rim, relative to the axis:
     ///
     /// ```text
     /// B = (1 - |F(x)|) / (1 - |F(sqrt(ka))|) in front,  |F(-x)| / (1 - |F(sqrt(ka))|) behind,
     /// x = sqrt(2 ka) cos(pi / 4 + theta / 2),  |F(x)| = |integral of exp(i t^2) from x to infinity| / sqrt(pi)
     /// ```
-    ///
-    /// Sommerfeld's shadow at grazing incidence (Born and Wolf, Principles of Optics, Sec. 11.5) with the edge wave's
+    /// This is Sommerfeld's shadow at grazing incidence (Born and Wolf, Principles of Optics, Sec. 11.5) without the
+    /// edge wave's ripple in front, which a round rim and a short burst smear.
     /// ripple in front left out, which a round rim and a short burst smear.
     ///
     /// ```
@@ -69,7 +69,7 @@ impl Piston {
         self.lobe(self.ka * libm::sin(off)).max(self.floor)
     }
 
-    /// Share that the end of the baffle leaves at an angle of 0 to pi, 1 on the axis.
+    /// Share of the amplitude that the end of the baffle leaves at an angle of 0 to pi, 1 on the axis.
     fn rim(&self, off: f64) -> f64 {
         let edge_wave = |x: f64| {
             let [c, s] = fresnel(x.abs() * libm::sqrt(2.0 / PI));
@@ -172,13 +172,13 @@ mod tests {
             for k in 0..18_000 {
                 assert!((at(k + 1) - at(k)).abs() < 2e-2 * at(k).max(Piston::DEFAULT_FLOOR), "{ka} {k}");
             }
-            // Half of the wave, at the edge of the shadow; nothing to speak of changes in the main lobe.
+            // Half of the wave is left at the edge of the shadow; the main lobe hardly changes.
             let db = |off: f64| 20.0 * libm::log10(continuous.pattern(off) / cut.pattern(off));
             let half = db(FRAC_PI_2 - 1e-9);
             assert!((-6.1..-4.8).contains(&half), "{half}");
             let lobe = cut.angle_at_db(-3.0).unwrap();
             assert!((0..=100).all(|k| db(0.01 * f64::from(k) * lobe).abs() < 0.3));
-            // Ever less behind.
+            // The pattern falls steadily behind.
             assert!((9_000..18_000).all(|k| at(k + 1) < at(k)));
         }
     }

@@ -7,7 +7,7 @@ use crate::module::{Beam, CLONE_HOLDS_US, Gain, Interface, Module, NoEcho};
 pub enum Source {
     /// A document that gives the figure, and its words.
     Document(&'static str),
-    /// A choice of ours, and why.
+    /// Our own choice, and the reason.
     Choice(&'static str),
 }
 
@@ -29,7 +29,7 @@ impl Preset {
     }
 }
 
-/// The preset of this name. `_` may stand for `-`, and capitals for small letters.
+/// Returns the preset of this name. Case does not matter, and `_` may stand for `-`.
 pub fn find(name: &str) -> Option<&'static Module> {
     let plain = |byte: u8| if byte == b'_' { b'-' } else { byte.to_ascii_lowercase() };
     let same = |known: &str| known.len() == name.len() && known.bytes().eq(name.bytes().map(plain));

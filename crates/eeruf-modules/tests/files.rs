@@ -1,4 +1,4 @@
-//! Modules in files: names, tables and lists, and what is wrong with them.
+//! Modules in files: names, tables and lists, and errors in them.
 
 use eeruf_modules::{HC_SR04, Interface, JSN_SR04T, MB1010, ModulesFile, NoEcho, PING};
 use serde::Deserialize;

@@ -26,8 +26,8 @@ fn figures_of_each_preset_agree_with_each_other() {
         // A band is as wide as the burst's spectrum, rounded.
         let width = f64::from(module.frequency_hz) / f64::from(module.burst_cycles);
         assert!((f64::from(module.bandwidth_hz) - width).abs() <= 0.5, "{}", preset.title);
-        // A line that is held is held for longer than any echo takes, in air that is a little warmer at least, and free
-        // before the next trigger.
+        // A held line stays high for longer than any echo takes, at least in slightly warmer air, and is free before
+        // the next trigger.
         if let NoEcho::Holds { us } = module.no_echo {
             assert!(100 * us > 99 * module.range_us() && us < module.rest_us, "{}", preset.title);
         }

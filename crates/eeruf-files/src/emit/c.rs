@@ -16,7 +16,7 @@ pub(super) struct CHeader<'r, const K: usize> {
     pub(super) requirements: &'r Requirements<'r>,
 }
 
-/// The need of one sensor.
+/// Reads one requirement of one sensor.
 type OfSensor<'r> = fn(&Requirements<'r>, usize) -> Micros;
 
 impl<'r, const K: usize> fmt::Display for CHeader<'r, K> {
@@ -67,8 +67,8 @@ impl<const K: usize> fmt::Display for ArduinoTab<'_, K> {
     }
 }
 
-/// The constant of type `EerufSchedule`, and what it points to. It names the requirements if it meets them; otherwise
-/// it is marked unverified.
+/// The constant of type `EerufSchedule`, and the arrays it points to. It names the requirements if the schedule meets
+/// them; otherwise it is marked unverified.
 struct Constant<'r, const K: usize> {
     schedule: &'r Schedule<K>,
     requirements: &'r Requirements<'r>,
@@ -100,7 +100,7 @@ impl<const K: usize> fmt::Display for Constant<'_, K> {
         let verified_for = most.or_else(alike);
         let of = |time: fn(VerifiedFor) -> Micros| verified_for.map_or(Micros::ZERO, time);
         let (layout, neighbours) = match requirements.layout {
-            // Single pairs may keep other intervals.
+            // Individual pairs may have other intervals.
             _ if requirements.uneven.is_some() => ("OTHER", 0),
             Layout::Line(n) => ("LINE", n),
             Layout::Ring(n) => ("RING", n),
@@ -173,7 +173,7 @@ mod tests {
     const REQUIREMENTS: Requirements<'static> =
         Requirements { min_interval: Micros::from_millis(15), ..Requirements::new(Micros::new(999)) };
 
-    // The constant says what it was verified for or that it was not.
+    // The constant states what it was verified for, or that it is unverified.
     #[test]
     fn constant_says_what_it_was_verified_for() {
         let tab = TABLE_I_D.to_arduino(&REQUIREMENTS, "PAPER");

@@ -10,9 +10,9 @@ use super::{CLimits, EERUF_VERSION, Grouped, Plain};
 /// The set-up of a flow ring.
 #[derive(Clone, Copy, Debug)]
 pub struct Flow<'r, const K: usize> {
-    /// Settings of the firing. The seed is the one for C and Arduino; a ring may be given another.
+    /// Firing settings. Their seed goes into the C and Arduino constants; a ring can be given another.
     pub turns: &'r TurnSettings,
-    /// Settings of what the ring believes.
+    /// Settings by which the ring believes echoes.
     pub belief: &'r BeliefSettings,
     /// Number of sensors.
     pub sensors: usize,
@@ -27,18 +27,18 @@ pub struct Flow<'r, const K: usize> {
 }
 
 impl<const K: usize> Flow<'_, K> {
-    /// Rust: the constants `SENSORS`, `BELIEF` and `CONFIG`, and the function `turns` of the robot's seed, for
-    /// `FlowRing::flow`; where sensors have limits of their own also `LIMITS` for `FlowRing::with_limits`.
+    /// Returns Rust source for `FlowRing::flow`: the constants `SENSORS`, `BELIEF` and `CONFIG`, and the function
+    /// `turns` of the robot's seed. `LIMITS` for `FlowRing::with_limits` is included if sensors have their own limits.
     pub fn to_rust(&self) -> String {
         FlowRust(self).to_string()
     }
 
-    /// A C99 header with the constant `eeruf_flow_config` for `eeruf_flow_init`, to be included after `eeruf.h`.
+    /// Returns a C99 header with the constant `eeruf_flow_config` for `eeruf_flow_init`; include it after `eeruf.h`.
     pub fn to_c(&self) -> String {
         FlowHeader(self).to_string()
     }
 
-    /// A file of an Arduino sketch with the constant `name`, as in [`to_c`](Self::to_c).
+    /// Returns a file of an Arduino sketch with the constant `name`, as in [`to_c`](Self::to_c).
     pub fn to_arduino(&self, name: &str) -> String {
         FlowTab { source: self, name }.to_string()
     }

@@ -20,8 +20,8 @@ pub trait Emit {
     /// A `const RING` in Rust, with the `requirements` for the compiler to check (see `eeruf_core::schedule!`).
     fn to_rust(&self, requirements: &Requirements<'_>) -> String;
 
-    /// A C99 header that includes nothing but `<stdint.h>`, with the firing times and what they were designed for; and,
-    /// where `eeruf.h` is included before it, the constant `eeruf_schedule` for its `eeruf_ring_init`.
+    /// A C99 header that includes only `<stdint.h>`, with the firing times and their requirements. If `eeruf.h` is
+    /// included first, the header also defines the constant `eeruf_schedule` for `eeruf_ring_init`.
     fn to_c(&self, requirements: &Requirements<'_>) -> String;
 
     /// A file of an Arduino sketch that uses the library in `c/arduino`, with the schedule as a constant of this name.
@@ -105,7 +105,7 @@ impl<const K: usize> fmt::Display for RustSource<'_, K> {
     }
 }
 
-/// Requirements as the last field of a macro, in Rust.
+/// Requirements as Rust source: the last field of the `schedule!` macro.
 struct Meets<'r>(&'r Requirements<'r>);
 
 impl fmt::Display for Meets<'_> {
@@ -253,7 +253,7 @@ impl<F: Fn() -> I, I: Iterator<Item = Micros>> fmt::Display for Numbers<F> {
     }
 }
 
-/// Microseconds with an underscore before each three digits: `65_000`.
+/// Microseconds with underscores between groups of three digits: `65_000`.
 struct Grouped(Micros);
 
 impl fmt::Display for Grouped {
@@ -276,7 +276,7 @@ mod tests {
     const REQUIREMENTS: Requirements<'static> =
         Requirements { min_interval: Micros::from_millis(15), ..Requirements::new(Micros::new(999)) };
 
-    // A table of waits is written as lags and waits and one of firing times as such.
+    // A table of waits is written as lags and waits, a table of firing times as firing times.
     #[test]
     fn table_is_written_as_it_was_made_waits_or_firing_times() {
         assert_eq!(
@@ -305,7 +305,7 @@ mod tests {
         assert!(c.contains("{24000u, 49000u") && c.contains("{18000u, 37000u"), "{c}");
     }
 
-    // An uneven schedule is written with all that it was designed for.
+    // An uneven schedule is written with all requirements that it was designed for.
     #[test]
     fn uneven_schedule_is_written_with_all_needs() {
         let ms = |ms: [u32; 2]| ms.map(Micros::from_millis);

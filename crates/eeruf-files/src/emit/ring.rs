@@ -1,4 +1,4 @@
-//! A ring of modules as source text: its modules as comments, its schedule, and how a driver listens to them.
+//! A ring of modules as source text: its modules as comments, its schedule, and the settings of its driver.
 
 use std::fmt::Write as _;
 
@@ -47,7 +47,7 @@ impl Form {
         lines.collect()
     }
 
-    /// A schedule, after its modules and before how a ring listens to them.
+    /// Writes a schedule between the comments on its modules and the settings of its driver.
     pub fn table<const K: usize>(self, schedule: &Schedule<K>, needs: &Requirements<'_>, modules: &[Module]) -> String {
         let mut text = self.modules(modules);
         text += &match self {
@@ -69,13 +69,13 @@ impl Form {
                 "\n/* For an EerufConfig: modules are deaf after firing. */\n#define EERUF_RING_CONFIG \
                  {{EERUF_VERSION, 2, 0, 0, {deaf_us}, 0, 0}}"
             ),
-            // The Arduino library hears pulses, whose beginning is not heard anyway.
+            // The Arduino library reads pulses; it does not hear the time just after firing anyway.
             _ => Ok(()),
         };
         text + &self.settings(modules, schedule.min_refire())
     }
 
-    /// Writes the setup of a flow ring, after its modules and before how a driver listens to them; nothing in TOML.
+    /// Writes the setup of a flow ring between the comments on its modules and the driver's settings; nothing in TOML.
     pub fn flow<const K: usize>(self, flow: &Flow<'_, K>, modules: &[Module]) -> String {
         let source = match self {
             Self::Toml => String::new(),
@@ -87,8 +87,8 @@ impl Form {
     }
 
     /// Writes the settings of a driver in C, if all modules are alike and answer by a pulse. A ring file may let
-    /// modules be triggered sooner than their data sheet says. A driver takes one kind of module; a comment in Rust and
-    /// C lists the sensors that are of another.
+    /// modules be triggered sooner than their data sheet says. A driver takes one kind of module; if the kinds differ,
+    /// a comment in Rust or C lists the sensors that differ from sensor 0.
     fn settings(self, modules: &[Module], min_refire: Micros) -> String {
         let Some(module) = modules.first() else { return String::new() };
         let others = (0..).zip(modules).filter(|&(_, other)| other != module);

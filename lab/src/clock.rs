@@ -6,7 +6,7 @@ use std::time::Instant;
 
 static BEGIN: LazyLock<Instant> = LazyLock::new(Instant::now);
 
-/// Returns this thread's processor time in seconds, as Linux tells it; else the time of the wall clock.
+/// Returns this thread's processor time in seconds if Linux reports it, or else the wall-clock time.
 pub(crate) fn core_seconds() -> f64 {
     let stat = read_to_string("/proc/thread-self/schedstat").ok();
     let ns = stat.and_then(|stat| stat.split(' ').next()?.parse::<f64>().ok());

@@ -1,7 +1,6 @@
 //! Success of `diagnose` at naming the senders of foreign readings, where the simulator knows them: `cargo lab
-//! diagnose-places [FIRST [PLACES [METHOD [PERIODS [PHYSICS [WHERE]]]]]]`. WHERE is `alcoves`: robots that stand in
-//! alcoves of Set I; or robots that drive: `courses` of Set II, where a pilot steers and the course sets the end,
-//! `alcoves-driving` and `rooms-driving`.
+//! diagnose-places [FIRST [PLACES [METHOD [PERIODS [PHYSICS [WHERE]]]]]]`. Robots stand if WHERE is `alcoves` (Set I).
+//! They drive in `alcoves-driving`, `rooms-driving` and `courses` (Set II), where a pilot steers until the course ends.
 
 use std::error::Error;
 
@@ -17,13 +16,13 @@ use crate::driving::{Place, world};
 struct Counts {
     /// Readings caused by foreign sound.
     foreign: usize,
-    /// Pairs that are named with the right sender.
+    /// Pairs for which the right sender is named.
     right: usize,
     /// Readings called foreign.
     named: usize,
     /// Readings with an edge.
     readings: usize,
-    /// Number of paths found, and of those that no sound took.
+    /// Numbers of paths reported, and of reported paths that no sound took.
     paths: usize,
     accidental: usize,
     /// Number of reported faults, all of them false.

@@ -2,8 +2,8 @@
 //! each reading is:
 //! `cargo lab doctor-alcoves [FIRST [ALCOVES [PERIODS [PHYSICS]]]]`.
 //!
-//! Each alcove gives a log of each way of firing, of a robot that stands and of one that drives, and beside each the
-//! same with every sensor alone in the room, so that none hears another.
+//! Each alcove gives a log of each way of firing, once for a standing and once for a driving robot. Beside each is a
+//! log in which every sensor is alone in the room, so that none hears another.
 
 use std::error::Error;
 use std::fmt::Write;
@@ -26,23 +26,23 @@ const MOVED_US: f64 = 150.0;
 #[derive(Clone, Default)]
 struct Outcome {
     examination: Examination,
-    /// The share of the readings that are another's sound, 150 us and more from what the sensor alone would read.
+    /// Share of readings that are another sensor's sound and at least 150 us from the sensor's reading alone.
     wrong: f64,
     /// Foreign readings by receiver and sender.
     heard: [[u32; SENSORS]; SENSORS],
     /// Sensors that the log can show to be fooled.
     tells: [bool; SENSORS],
-    /// The stamps with own echoes only.
+    /// The doctor's answer if every sensor heard only its own echoes, with the same firing times.
     alone: Examination,
 }
 
 /// Readings of one sensor, in order: the phase, the echo in microseconds, and the sender if it is another sensor.
 type Truth = Vec<(u8, f64, Option<u8>)>;
 
-/// Returns the sensors of which the ranges and times alone could prove crosstalk to a reader who knows the sender of
-/// each reading. Under alternating lags: readings are foreign more often at one of the two lags, by four standard
-/// deviations, or those of one sender move by more than 150 us from one to the next, 20 times. Under constant lags, if
-/// the robot drives: two sensors read each other in 20 periods.
+/// Returns the sensors for which ranges and times alone could prove crosstalk to a reader who knows the sender of each
+/// reading. Under alternating lags the share of foreign readings must differ between the lags by four standard
+/// deviations, or one sender's readings must jump by more than 150 us 20 times. Under constant lags, if the robot
+/// drives, two sensors must read each other in 20 periods.
 fn tells(way: &str, drives: bool, truth: &[Truth]) -> [bool; SENSORS] {
     let mut told = [false; SENSORS];
     for (own, readings) in truth.iter().enumerate() {

@@ -4,7 +4,7 @@
 //! cargo lab four-worlds [interference]
 //! ```
 //!
-//! With `interference` sounds within a burst of each other add.
+//! With `interference`, sounds that arrive within a burst of each other add up.
 
 use eeruf_sim::experiments::set_one::{SetOneOptions, set_one};
 use eeruf_sim::*;

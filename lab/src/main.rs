@@ -83,7 +83,7 @@ fn main() -> ExitCode {
             eprintln!("{name}: no command of the lab; `cargo lab` lists them");
             return ExitCode::from(2);
         }
-        // Whoever reads the list may stop before its end.
+        // The reader of the list may close the pipe before its end.
         let list = COMMANDS.map(|(name, usage, about, _)| format!("{name} {usage}\n    {about}\n")).concat();
         _ = std::io::stdout().write_all(list.as_bytes());
         return ExitCode::SUCCESS;

@@ -1,9 +1,8 @@
 //! Ways of firing rings measured by a robot's needs: the table of `eeruf_sim::experiments::measure`, with intervals,
 //! and its rows as CSV.
-//!
-//! `cargo lab measure RING.toml .. [--first N] [--places N] [--choose N] [--csv FILE] [--planted BLOCKS]`: rooms from
-//! number 20,000 on, and 6 of each kind, on which figures are reported; settings are chosen on as many from number 0
-//! on. With `--planted`, instead how often a sound way is told from itself with something planted in it.
+//! `cargo lab measure RING.toml .. [--first N] [--places N] [--choose N] [--csv FILE] [--planted BLOCKS]`. Figures are
+//! reported on rooms from number 20,000 on, 6 of each kind; settings are chosen on as many rooms from number 0 on.
+//! `--planted` prints instead how often a sound way is told from a copy of it with a planted flaw.
 
 use std::fs::File;
 use std::io::{BufWriter, Write};
@@ -136,7 +135,7 @@ fn planted(ways: &[MeasuredWay], asked: &MeasureAsked, choose: u64, blocks: u64)
     let Some(sound) = ways.iter().find(|way| way.way.name == "one_by_one_33ms") else { return Ok(()) };
     let controls = Control::PLANTED.map(Some).into_iter().chain([None]);
     let ways: Vec<_> = controls.map(|control| (sound.clone(), control)).collect();
-    // Beside another robot one by one may have no point at all.
+    // Beside another robot, one by one may have no operating point.
     let alone: Vec<_> = asked.conditions.iter().copied().filter(|condition| !condition.others).collect();
     let mut told = [0; Control::PLANTED.len()];
     for block in 0..blocks {

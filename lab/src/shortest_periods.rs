@@ -6,7 +6,7 @@
 //! cargo lab periods
 //! ```
 //!
-//! The first prints columns, which `benches/peers/cpsat.py` reads; the second the table of docs/log/search.md.
+//! The first command prints columns, which `benches/peers/cpsat.py` reads; the second the table of docs/log/search.md.
 
 use std::time::Instant;
 

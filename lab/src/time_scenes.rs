@@ -16,8 +16,8 @@ use eeruf_sim::experiments::set_one::Alcove;
 use eeruf_sim::experiments::set_two::{SECOND_BEHIND, SetTwoOptions, set_two};
 use eeruf_sim::*;
 
-/// Returns the shortest time of several runs of `work`, in milliseconds: this many, or as many as fit into a second, at
-/// least three.
+/// Returns the shortest time of `work` in milliseconds, over the number of runs asked for, or over as many as fit into
+/// a second, at least three.
 fn quickest_ms(asked: Option<u32>, mut work: impl FnMut()) -> f64 {
     let (start, mut quickest, mut runs) = (Instant::now(), f64::INFINITY, 0);
     while asked.map_or(runs < 3 || start.elapsed().as_secs_f64() < 1.0, |asked| runs < asked) {
@@ -33,7 +33,7 @@ fn room() -> Vec<Wall> {
     Wall::polyline(&[[0.0, 0.0], [6.0, 0.0], [6.0, 4.0], [0.0, 4.0], [0.0, 0.0]]).collect()
 }
 
-/// A ring of 24 in a room of four walls, with this many poles of 2 cm: the time of its matrix of order 4.
+/// Times the matrix of order 4 for a ring of 24 in a room of four walls, with this many poles of 2 cm.
 fn matrix_ms(poles: usize, asked: Option<u32>) -> (f64, usize) {
     let places = [[1.0, 1.0], [4.5, 1.2], [4.0, 3.2], [1.4, 3.0]];
     let poles = places.iter().take(poles).map(|&[x, y]| Pole::new(x, y, 0.01)).collect();
@@ -99,7 +99,7 @@ fn driving(at: [f64; 2]) -> Robot {
     Robot { motion: Motion::Constant { velocity: Vector::new(0.14, 0.14), turn_rad_s: 1.0 }, ..ring }
 }
 
-/// Times a reading in 20 periods of these robots in this scene, with sound followed up to this order.
+/// Times a reading, averaged over 20 periods of these robots in this scene, with sound followed up to this order.
 fn reading_ms(scene: Scene, robots: Vec<Robot>, max_order: u32, asked: Option<u32>) -> (f64, usize) {
     let world = World::new(scene, robots, Noise::default())
         .and_then(|world| world.with_max_order(max_order))

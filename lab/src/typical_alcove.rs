@@ -1,7 +1,7 @@
 //! The typical alcove of Set I, and the rank of the alcove of `scenes/alcove.toml` among them.
 //!
-//! The rule: of 200 alcoves from 20,000 on, the one whose ranks in four figures (wrong under constant lags; wrong, lost
-//! and starved under EERUF) are nearest to the middle, in sum. `scenes/typical-alcove.toml` is that one.
+//! The typical alcove is the one of 200, from number 20,000 on, whose ranks in four figures (wrong under constant lags;
+//! wrong, lost and starved under EERUF) are in sum nearest to the middle. `scenes/typical-alcove.toml` holds it.
 //!
 //! `cargo lab typical-alcove [SCENE.toml]`: also writes it as a scene.
 

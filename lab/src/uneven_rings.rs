@@ -1,6 +1,6 @@
-//! Prints random rings of 16 to 32 sensors that differ, and the engine's results: `cargo lab uneven-rings [RINGS
-//! [SECONDS [FIRST]]]`, from this seed on. A line of JSON each, in ticks: the problem, period, bound, the seconds of a
-//! core, and each period found with the seconds until then; `benches/peers/cpsat.py` reads them.
+//! Prints random rings of 16 to 32 sensors that differ, and the engine's results, for `benches/peers/cpsat.py`: `cargo
+//! lab uneven-rings [RINGS [SECONDS [FIRST]]]`, where FIRST is the first seed. Each line of JSON gives, in ticks, the
+//! problem, period and bound, the processor time in seconds, and each period found with the seconds until then.
 
 use eeruf_period::engine::Problem;
 use eeruf_period::engine::shortest::shortest;

@@ -7,7 +7,7 @@ use eeruf_sim::{Entry, LabMate, Method};
 
 use super::{Asked, Cell, Table, flow, usual};
 
-/// Choices of the ranges that enter the map, and of the listening time.
+/// Candidates for the range that enters the map and for the votes.
 fn candidates() -> Vec<Entry> {
     let mut entries = vec![Entry::from(Method::Flow)];
     for ms in [12, 14, 16, 18, 24] {

@@ -1,8 +1,8 @@
 //! Tables of flow beside one by one, with and without a median of three: figures with 95 % intervals, and rows as CSV.
 //!
 //! `cargo lab flow-tables courses|robots|paths|rooms|leads [--ring RING.toml] [--first N] [--count N] [--tune]
-//! [--csv FILE]`: settings are chosen (`--tune`) on numbers below 2,000, figures are reported from 20,000 on. A new
-//! table appends its rows to the file.
+//! [--csv FILE]`. Settings are chosen (`--tune`) on scenes numbered below 2,000; figures are reported from number
+//! 20,000 on. Each table appends its rows to the file.
 
 mod courses;
 mod paths;

@@ -1,5 +1,5 @@
-//! Sound as paths alone, around core's own ring: several equally loud paths from four other sensors to each, and the
-//! distance by which readings that fit move a belief whose wall is gone.
+//! Core's own ring in sound made of paths alone: each sensor hears several equally loud paths from four others. Also
+//! measures how far readings that fit lead a belief away after its wall is gone.
 
 use eeruf_core::flow::{BeliefSettings, FlowRing, InTurn, TurnSettings, Votes};
 use eeruf_core::judge::{Judge, MedianFilter};
@@ -16,7 +16,7 @@ const LONGEST_US: f64 = 33_000.0;
 /// A ring with a judge that knows no motion.
 type AnyRing<J> = Ring<InTurn<SENSORS>, J, SENSORS, 1, 3>;
 
-/// Travel time of a path in us, and its change in us per ms, which turns at its ends.
+/// Travel time of a path in us, and its change in us per ms; the change reverses at the shortest and longest time.
 struct Path {
     us: f64,
     rate: f64,
@@ -35,7 +35,7 @@ impl Path {
     }
 }
 
-/// Walls of each sensor, and paths from others.
+/// The paths of each sensor's own echo, and the paths from others.
 struct Sound {
     own: Vec<Path>,
     foreign: Vec<(u8, u8, Path)>,
@@ -91,7 +91,7 @@ impl Sound {
                         let own = own.filter(|_| sensor > 0 || now < self.gone);
                         let foreign = self.foreign.iter().filter(|path| path.0 == sensor).map(|path| (path.1, &path.2));
                         for (receiver, path) in own.into_iter().chain(foreign) {
-                            // One in ten fades away.
+                            // One echo in ten fades away.
                             let off = path.at(now) + random.between(-15.0, 15.0);
                             if !random.bits().is_multiple_of(10) {
                                 arrivals.push((now + off as u64, receiver));
@@ -127,7 +127,7 @@ fn believing(
     FlowRing::flow(SENSORS, turns, belief, config(), Instant::from_micros(0))
 }
 
-/// Returns the number of accepted echoes, and of those more than 0.5 ms from the sensor's own.
+/// Returns the number of accepted echoes, and the number of these more than 0.5 ms from the sensor's own.
 fn wrong<J: Judge>(sound: &Sound, random: Random, ring: AnyRing<J>) -> [u32; 2] {
     let mut counts = [0; 2];
     sound.run(ring, random, 10, |fired, sensor, t_echo, _| {
@@ -176,13 +176,13 @@ pub(super) fn table(asked: &Asked) -> Result<Table, Box<dyn std::error::Error>> 
 /// Time when the wall disappears, in us.
 const GOES: u64 = 3_000_000;
 
-/// The distance in mm by which readings that fit move the belief of sensor 0 after its wall has gone, and for how long,
-/// in ms.
+/// Returns the distance in mm by which readings that fit lead sensor 0's belief after its wall has gone, and the time
+/// in ms for which they do; `None` if the belief never was right.
 fn lead(number: u64, rate: f64, speed: u16) -> Result<Option<[f64; 2]>, RingError> {
     let random = Random::new(number);
     let sound = Sound::random(&mut random.of(1), 3, rate, GOES);
     let turns = TurnSettings::new(random.of(2).bits() as u32 | 1);
-    // What is believed, and since when; then how far it has come.
+    // The belief with its firing time, the lead so far, and the last reading of the wall.
     let (mut believed, mut lead, mut left): (_, [f64; 2], _) = (None, [0.0; 2], 0.0);
     sound.run(believing(turns, Votes::TwoInARow, speed)?, random.of(3), 8, |fired, sensor, t_echo, ring| {
         if sensor > 0 {

@@ -1,4 +1,4 @@
-//! Two to six robots of one make, without any setting against each other: standing, facing each other, and driving.
+//! Two to six robots of one make, not configured to avoid each other: standing, facing each other, and driving.
 
 use eeruf_core::Micros;
 use eeruf_sim::experiments::set_three::{Arrangement, Placing};
@@ -37,7 +37,7 @@ const CONDITIONS: [Together; 9] = [
 ];
 
 impl Together {
-    /// Puts robots of this make in the places of a placing of Set III.
+    /// Puts robots of this make at the positions of a placing of Set III.
     fn place(self, robot: &Robot, placing: &Placing) -> Vec<Robot> {
         let places: Vec<Vector> = placing.robots.iter().map(|of| of.pose.translation.vector).collect();
         let with = |(k, of): (usize, &Robot)| {

@@ -64,7 +64,7 @@ fn run(of: &Condition, robot: &Robot, kind: RoomKind, number: u64, entry: &Entry
 fn trade(robot: &Robot) -> Vec<Entry> {
     let part = |of: f64| Some(Micros::new((f64::from(turns_of(robot, 1).most.as_micros()) / of) as u32));
     let mut entries = usual();
-    // Every echo has twice the least quiet.
+    // A way that believes every echo gets twice the least quiet.
     for (name, twice) in [("R / 5.5", 5.5), ("R / 2.8", 2.8), ("R / 1.7", 1.7)] {
         entries.push(flow(&format!("1 of 1, {name}"), Votes::EveryEcho, part(2.0 * twice), None));
         entries.push(flow(&format!("two in a row, {name}"), Votes::TwoInARow, part(twice), None));

@@ -1,5 +1,5 @@
 //! Search for settings of the experiments' methods: a pilot for each method of Set II, and the comparison of several
-//! echoes in Set I. It goes into the source of `eeruf-sim`; with `--check` it is only compared (an hour).
+//! echoes in Set I. The results go into the source of `eeruf-sim`, or with `--check` are compared with it (an hour).
 //!
 //! ```text
 //! cargo lab tune [--check]
@@ -28,7 +28,7 @@ use self::log::Log;
 use score::ROUNDS;
 use search::{Search, Tuned};
 
-/// Budget of nodes for the search of the schedule of `eeruf_best`; it is proven shortest long before.
+/// Node budget for the search of `eeruf_best`'s schedule, which is proven shortest long before that.
 const BUDGET: u64 = 300_000;
 
 const FOLDER: &str = "target/tune";
@@ -72,7 +72,7 @@ fn pilots(folder: &Path) -> Result<String, Box<dyn Error>> {
     let options = SetTwoOptions { best: Some(best_schedule_for(&robot, BUDGET, |_| true)?), ..options };
     let mut log = Log::open(folder, &ROUNDS)?;
     let mut found: Vec<(Method, Tuned)> = Vec::new();
-    // Those that are driven by default first, as they are what a search that is stopped early should have.
+    // Methods driven by default come first: a search that is stopped early should have their pilots.
     let (first, others): (Vec<_>, Vec<_>) = Method::ALL
         .into_iter()
         .filter(|&of| steered_as(of) == of)

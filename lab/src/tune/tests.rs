@@ -62,20 +62,20 @@ fn small_search_takes_the_best_pilot() {
     let text = source(&SMALL, &[(Method::Eeruf, tuned)]);
     assert!(text.contains("//! 3 pilots on courses 0 to 0,\n//! the best 2 on courses 1 to 2. The best is taken.\n"));
     assert!(text.contains(&format!("[(Method, Piloting); 1] = [\n    {}\n];\n", row(Method::Eeruf, &tuned))), "{text}");
-    // A second run drives nothing: what the log has, it believes.
+    // A second run drives nothing: it takes all scores from the log.
     let path = folder.join("set-two-3x1-2x2.tsv");
     let logged = fs::read_to_string(&path).unwrap();
     assert_eq!(logged.lines().count(), 5);
     assert_eq!(search(&SMALL, &folder), tuned);
     assert_eq!(fs::read_to_string(&path).unwrap(), logged);
-    // One that was cut short takes up where it was, and the broken line is tried again.
+    // A run that was cut short resumes there and repeats the broken line.
     let cut = logged.len() - 3;
     fs::write(&path, &logged[..cut]).unwrap();
     assert_eq!(search(&SMALL, &folder), tuned);
     fs::remove_dir_all(&folder).ok();
 }
 
-// The pilots in the source are printed as this prints them and are what is driven.
+// The pilots in the source are printed by this program, and are the ones that are driven.
 #[test]
 fn pilots_in_the_source_are_as_printed() {
     let file = include_str!("../../../crates/eeruf-sim/src/experiments/set_two/own_pilots.rs");

@@ -1,5 +1,5 @@
 // @ts-check
-/** What one sensor reads over time: the same marks as in the room, and a line for what it reads alone. */
+/** The readings of one sensor over time: the same marks as in the room, and a line for its readings alone. */
 import { drawMark, markOf } from "./marks.js";
 
 const LEFT = 38;
@@ -39,7 +39,7 @@ export function drawChart(context, { width, height, until, farthest }, { reading
   const tick = gridStep(until, 5);
   for (let s = 0; s <= until + 1e-9; s += tick)
     context.fillText(`${Number(s.toFixed(2))} s`, Math.min(x(s), width - 20), height - BOTTOM + 5);
-  // Alone it reads this.
+  // A sensor alone in the room reads this.
   context.strokeStyle = colours.muted;
   context.globalAlpha = 0.6;
   context.lineWidth = 3;

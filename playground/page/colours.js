@@ -30,7 +30,7 @@ const ON_DARK = [
   "#aab1bd",
 ];
 
-/** @returns {Colours} The colours that hold now. */
+/** @returns {Colours} The present colours. */
 export function readColours() {
   const style = getComputedStyle(document.documentElement);
   const of = (/** @type {string} */ name) => style.getPropertyValue(`--${name}`).trim();

@@ -1,5 +1,5 @@
 // @ts-check
-/** Part one: the room, the methods side by side, the clock that all pictures share. */
+/** Part one: the room, the methods side by side, and the clock that all pictures share. */
 import { readColours } from "./colours.js";
 import { byId } from "./dom.js";
 import { Cancelled } from "./engine.js";
@@ -8,14 +8,14 @@ import { Panel } from "./panel.js";
 import { inPageWords, sceneText } from "./texts.js";
 import { boxOf } from "./view.js";
 
-/** For how many periods of the robot each method runs, and how many of them are shown. */
+/** Number of the robot's periods that each method runs, and the number of them that are shown. */
 const PERIODS = 400;
 const SHOWN_PERIODS = 24;
-/** The simulation begins when nothing has been dragged for so long. */
+/** The simulation begins when nothing has been dragged for this long. */
 const SETTLED_MS = 160;
-/** Progress is shown for what takes longer. */
+/** Progress is shown for tasks that take longer. */
 const PATIENCE_MS = 400;
-/** How many drags the printed figure is the median of. */
+/** Number of drags whose median is printed. */
 const KEPT_FRAMES = 200;
 
 /** @typedef {import("./state.js").State} State */
@@ -60,12 +60,12 @@ export class Comparison {
     new ResizeObserver(() => this.draw()).observe(this.row);
   }
 
-  /** @returns {{method: string, readings: import("./run.js").Reading[]}[]} What the pictures show. */
+  /** @returns {{method: string, readings: import("./run.js").Reading[]}[]} The readings that the pictures show. */
   runs() {
     return this.panels.map(({ method, readings }) => ({ method, readings }));
   }
 
-  /** @returns {number} Up to where readings are shown, in seconds. */
+  /** @returns {number} Time in seconds up to which readings are shown. */
   until() {
     return SHOWN_PERIODS * 1e-6 * (this.traced?.period_us ?? 60_000);
   }
@@ -86,7 +86,7 @@ export class Comparison {
     if (!this.playing) return;
     const passed = Math.min(0.1, (now - this.before) / 1000);
     this.before = now;
-    // While the room is dragged or computed anew, nothing sounds.
+    // While the room is dragged or computed again, nothing sounds.
     if (this.panels.some((panel) => panel.run)) this.at += passed / this.page.state().slow;
     if (this.at > this.until()) this.at = 0;
     this.draw();
@@ -131,7 +131,7 @@ export class Comparison {
       }
       this.panels[k].remove.hidden = state.shown.length < 2;
     });
-    // Only where it is not yet: an element that is put anywhere loses the focus.
+    // Only if it is elsewhere: an element that is moved loses the focus.
     if (this.handles.root.parentElement !== this.panels[0].stage) this.panels[0].stage.append(this.handles.root);
   }
 
@@ -155,7 +155,7 @@ export class Comparison {
     this.#sayFrames();
   }
 
-  /** @returns {number} From a change to its picture, in milliseconds: the median of the last ones. */
+  /** @returns {number} Time from a change to its picture, in milliseconds: the median of the last ones. */
   frameMs() {
     const sorted = [...this.frames].sort((a, b) => a - b);
     return sorted[Math.floor(sorted.length / 2)] ?? NaN;

@@ -1,5 +1,5 @@
 // @ts-check
-/** Part two: a ring of one's own, its shortest period, the proof and the certificate. */
+/** Part two: your own ring, its shortest period, the proof and the certificate. */
 import { readColours } from "./colours.js";
 import { byId, element } from "./dom.js";
 import { Cancelled } from "./engine.js";
@@ -17,7 +17,7 @@ const FIELDS = [
   { name: "tick", label: "Firing times are multiples of", unit: "µs", step: "10" },
 ];
 
-/** With more sensors than this a search takes a while, and says so. */
+/** With more sensors than this a search takes a while, and the page says so. */
 const FEW = 24;
 const MANY =
   "So many sensors take a minute or two. “Stop” ends it; a robot that stands (0 m/s) and coarser firing times are quicker.";
@@ -125,7 +125,7 @@ export class Designer {
     this.says.classList.toggle("bad", bad);
   }
 
-  /** Shows the state in the form, and no result if it is that of another ring. */
+  /** Shows the state in the form, and hides a result of another ring. */
   sync() {
     const state = this.page.state();
     this.module.value = state.module;
@@ -176,7 +176,7 @@ export class Designer {
     }
   }
 
-  /** Finds what would make the period shorter. @param {string} ring */
+  /** Finds changes that would make the period shorter. @param {string} ring */
   async #find(ring) {
     const list = byId("faster", HTMLElement);
     const { value_us } = this.answer.found;
@@ -288,7 +288,7 @@ export class Designer {
     this.draw();
   }
 
-  /** Draws the diagram anew, as after a change of size or colours. */
+  /** Redraws the diagram, as after a change of size or colours. */
   draw() {
     if (!this.answer || this.result.hidden) return;
     this.canvas.style.height = `${timingHeight(this.answer.fire_us[0].length) / 16}rem`;

@@ -1,5 +1,5 @@
 // @ts-check
-/** Making elements. */
+/** Functions that make elements. */
 
 /**
  * @param {string} name
@@ -21,7 +21,7 @@ export function byId(id, kind) {
   throw new Error(`no ${kind.name} with the id ${id}`);
 }
 
-/** @returns {boolean} Whether whoever looks wants little to move. */
+/** @returns {boolean} True if the reader prefers reduced motion. */
 export function wantsLittleMotion() {
   return matchMedia("(prefers-reduced-motion: reduce)").matches;
 }

@@ -1,5 +1,5 @@
 // @ts-check
-/** The room with the robot, and the ways along which foreign sound reaches one sensor. */
+/** The room with the robot, and the paths along which foreign sound reaches one sensor. */
 import { sensorColour } from "./colours.js";
 
 /** @typedef {import("./colours.js").Colours} Colours */
@@ -10,7 +10,7 @@ import { sensorColour } from "./colours.js";
 
 const HALF_BEAM_RAD = (12 * Math.PI) / 180;
 const BEAM_M = 0.22;
-/** How far behind its sensor a number stands, in pixels. */
+/** Distance of a number behind its sensor, in pixels. */
 const NUMBER_IN = 11;
 
 /** @param {CanvasRenderingContext2D} context @param {View} view @param {[number, number][]} corners */
@@ -69,7 +69,7 @@ function drawScale(context, view, colours) {
 }
 
 /**
- * The ways along which one sensor is fooled, wider the oftener, with arrows.
+ * The paths along which one sensor is fooled, with arrows; the more often, the wider.
  * @param {CanvasRenderingContext2D} context @param {View} view
  * @param {ReturnType<typeof import("./run.js").foolersOf>} foolers @param {Colours} colours
  */
@@ -81,7 +81,7 @@ export function drawFoolers(context, view, foolers, colours) {
     context.strokeStyle = context.fillStyle = sensorColour(colours, emitter);
     context.globalAlpha = accepted > 0 ? 0.75 : 0.4;
     context.lineWidth = width;
-    // Not believed: a dashed way.
+    // Paths of sound that was never believed are dashed.
     context.setLineDash(accepted > 0 ? [] : [5, 5]);
     polyline(context, view, corners);
     context.stroke();
@@ -99,7 +99,7 @@ export function drawFoolers(context, view, foolers, colours) {
 }
 
 /**
- * The ways from all other sensors to one, the louder the clearer: while the room is dragged.
+ * The paths from all other sensors to one, shown while the room is dragged; the louder, the clearer.
  * @param {CanvasRenderingContext2D} context @param {View} view @param {Traced} traced @param {number} receiver
  * @param {Colours} colours
  */
@@ -161,7 +161,7 @@ export function drawRobot(context, view, traced, { sensor: looked, blind }, colo
   });
 }
 
-/** @param {Traced} traced @param {number} radius In pixels. @returns {number} How wide a number may be there. */
+/** @param {Traced} traced @param {number} radius In pixels. @returns {number} The room for a number there. */
 function numberRoom({ sensors }, radius) {
   if (sensors.length < 2) return radius;
   const [[, , one], [, , other]] = sensors;
@@ -177,7 +177,7 @@ function drawSensor(context, spot, colour, { looked, isBlind }, colours) {
   context.arc(spot.x, spot.y, 4, 0, 2 * Math.PI);
   context.fill();
   if (isBlind) {
-    // Crossed out, as on a sign.
+    // Blind sensors are crossed out, as on a sign.
     context.strokeStyle = colours.wrong;
     context.lineWidth = 2;
     context.beginPath();

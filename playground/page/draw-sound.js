@@ -1,18 +1,18 @@
 // @ts-check
-/** Sound on its way at one moment, and what the sensors believe by then. */
+/** Sound on its way at one moment, and the beliefs of the sensors at that moment. */
 import { sensorColour } from "./colours.js";
 import { drawMark, markOf } from "./marks.js";
 
 /** @typedef {import("./run.js").Reading} Reading */
 
-/** How far the puff that a firing sensor gives off is seen. */
+/** Radius up to which the puff of a firing sensor is seen. */
 const PUFF_M = 0.45;
 const HALF_BEAM_RAD = (18 * Math.PI) / 180;
 /** The length of the moving stroke that stands for sound. */
 const STROKE_M = 0.16;
-/** For how long a rejected reading is seen, in seconds. */
+/** Time for which a rejected reading is seen, in seconds. */
 const REJECTED_FOR_S = 0.04;
-/** How near to the edge of the picture a mark is drawn at most. */
+/** Least distance of a mark from the edge of the picture. */
 const EDGE_PX = 10;
 
 /**
@@ -81,7 +81,7 @@ function pointAt({ corners, lengths }, length) {
 
 /**
  * @param {import("./view.js").View} view @param {import("./view.js").Spot} from @param {import("./view.js").Spot} to
- * @returns {import("./view.js").Spot} The end, or where the way there leaves the picture: no mark is lost to sight.
+ * @returns {import("./view.js").Spot} The end, or the point where the way there leaves the picture: each mark is seen.
  */
 function within({ width, height }, from, to) {
   const share = (/** @type {number} */ a, /** @type {number} */ b, /** @type {number} */ most) =>
@@ -91,7 +91,7 @@ function within({ width, height }, from, to) {
 }
 
 /**
- * What each sensor believes: the last accepted reading along its axis; rejected ones for a moment.
+ * The belief of each sensor: the last accepted reading along its axis, and for a moment rejected ones.
  * @param {CanvasRenderingContext2D} context
  * @param {import("./view.js").View} view
  * @param {{traced: import("./draw-scene.js").Traced, readings: Reading[], at: number}} moment

@@ -1,11 +1,11 @@
 // @ts-check
-/** The page's side of the workers: asks questions, hears of progress, cancels. */
+/** The page's side of the workers: asks questions, receives progress, cancels. */
 import { loadEngine, newWorker } from "./platform.js";
 
-/** What a question that was cancelled or overtaken by a later one ends with. */
+/** The error of a question that was cancelled or overtaken by a later one. */
 export class Cancelled extends Error {}
 
-/** What the engine says is wrong with a question: one sentence. */
+/** The engine's objection to a question: one sentence. */
 export class Refused extends Error {}
 
 /** @typedef {{question: object, resolve: (answer: any) => void, reject: (error: Error) => void,
@@ -28,7 +28,7 @@ export class Desk {
   /**
    * @param {object} question
    * @param {(share: number, nodes: number) => void} [onProgress] `share` is NaN where it is not known.
-   * @returns {Promise<any>} What the engine answers; rejects with `Refused` or `Cancelled`.
+   * @returns {Promise<any>} The engine's answer; rejects with `Refused` or `Cancelled`.
    */
   ask(question, onProgress) {
     return new Promise((resolve, reject) => {
@@ -37,7 +37,7 @@ export class Desk {
     });
   }
 
-  /** As `ask`, but takes the place of all questions that still wait. */
+  /** Asks like `ask`, but replaces all questions that still wait. */
   askLatest(/** @type {object} */ question) {
     for (const job of this.waiting.splice(0)) job.reject(new Cancelled("overtaken"));
     return this.ask(question);
@@ -68,7 +68,7 @@ export class Desk {
       job.reject(new Refused(`The engine did not start: ${error instanceof Error ? error.message : error}`));
       return;
     }
-    // It may have been cancelled while the engine was loading.
+    // The question may have been cancelled while the engine was loading.
     if (this.asked === job) this.worker.postMessage({ id, question: job.question });
     else this.#next();
   }
@@ -106,10 +106,10 @@ export class Desk {
   }
 }
 
-/** @returns {{quick: Desk, slow: Desk}} A desk for what follows a drag, and one for simulations and searches. */
+/** @returns {{quick: Desk, slow: Desk}} A desk for answers during a drag, and one for simulations and searches. */
 export function openDesks() {
   const compiled = loadEngine();
-  // Whoever asks hears of a failure.
+  // Each question reports the failure.
   compiled.catch(() => {});
   return { quick: new Desk(compiled), slow: new Desk(compiled) };
 }

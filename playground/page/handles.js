@@ -1,7 +1,7 @@
 // @ts-check
 /**
- * What can be dragged in the room: corners of walls, whole walls, poles, the robot and its heading. Each is a button on
- * top of the picture: arrow keys move it, Delete takes a wall or pole away.
+ * Handles of things that can be dragged in the room: corners of walls, whole walls, poles, the robot and its heading.
+ * Each is a button on top of the picture: arrow keys move it, Delete removes a wall or pole.
  */
 import { element } from "./dom.js";
 import { toMillimetre } from "./state.js";
@@ -10,7 +10,7 @@ import { toMillimetre } from "./state.js";
 /**
  * @typedef {object} Handle
  * @property {string} kind The class of its button.
- * @property {string} name What it is, for those who hear the page.
+ * @property {string} name Its description for screen readers.
  * @property {number} x
  * @property {number} y
  * @property {(state: State, x: number, y: number) => void} move Changes a copy of the state.
@@ -19,7 +19,7 @@ import { toMillimetre } from "./state.js";
 
 const STEP_M = 0.02;
 const LONG_STEP_M = 0.1;
-/** Corners that are dropped this near to another become one with it. */
+/** A corner that is dropped this near to another becomes one with it. */
 const SNAP_M = 0.04;
 
 /** @param {State} state @returns {Handle[]} */
@@ -127,7 +127,7 @@ export class HandleLayer {
     this.dragging = false;
   }
 
-  /** Puts the buttons where things are. */
+  /** Puts the buttons onto their things. */
   place() {
     const state = this.page.state();
     this.handles = handlesOf(state);
@@ -172,7 +172,7 @@ export class HandleLayer {
       const to = view.metres(spot(at));
       this.#change(before, (copy) => handle.move(copy, to.x + off.x, to.y + off.y), final);
     };
-    // On the window, since the button goes away if what it moves does.
+    // Listen on the window: the button disappears with the thing that it moves.
     const listening = new AbortController();
     const on = (/** @type {"pointermove" | "pointerup" | "pointercancel"} */ name, /** @type {boolean} */ final) =>
       addEventListener(

@@ -1,5 +1,5 @@
 // @ts-check
-/** A lesson in seven steps that moves the scene by itself, for a lecture or for oneself. */
+/** A lesson in seven steps that moves the scene by itself, for a lecture or a single reader. */
 import { byId, wantsLittleMotion } from "./dom.js";
 import { ROOMS, firstState } from "./state.js";
 
@@ -55,7 +55,7 @@ const STEPS = [
   },
 ];
 
-/** How long the scene moves from one step to the next. */
+/** Time for which the scene moves from one step to the next. */
 const GLIDE_MS = 700;
 
 export class Lesson {
@@ -94,13 +94,13 @@ export class Lesson {
     this.next.textContent = this.step + 1 < STEPS.length ? "Next" : "Done";
     const { walls, poles, robot, ...rest } = structuredClone({ ...firstState(), ...state });
     this.#glideTo({ walls, poles, robot, ...rest });
-    // The last picture is the one that the step adds: on a phone they stand one below the other.
+    // The last picture is the one that the step adds: on a phone, pictures stand one below the other.
     [...document.querySelectorAll(".panel")].at(-1)?.scrollIntoView({ block: "start" });
     this.title.focus({ preventScroll: true });
     if (!wantsLittleMotion()) this.page.play();
   }
 
-  /** Moves the robot to where it will stand; walls change at once. @param {State} goal */
+  /** Moves the robot to its next place; walls change at once. @param {State} goal */
   #glideTo(goal) {
     const glide = ++this.glide;
     const from = { ...this.page.state().robot };

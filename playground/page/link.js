@@ -2,7 +2,7 @@
 /** A link that holds the whole state, in the part that no server sees: `#s=` and JSON in base64url. */
 import { StateError, checkedState } from "./state.js";
 
-/** More than any state needs. */
+/** Largest length of the text; no state needs as much. */
 const MAX_LENGTH = 40_000;
 
 /** @param {import("./state.js").State} state @returns {string} The part of the link after `#`. */

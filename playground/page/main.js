@@ -15,7 +15,7 @@ import { TakeHome } from "./take-home.js";
 
 const MAX_SHOWN = 4;
 
-/** @returns {State} What the link holds, or the first state and a sentence that says why. */
+/** @returns {State} The state in the link, or the first state and a sentence that says why. */
 function stateFromLink() {
   try {
     return fromHash(location.hash) ?? firstState();
@@ -50,7 +50,7 @@ async function start() {
     } catch (error) {
       if (!(error instanceof StateError)) throw error;
       say(`${error.message}.`);
-      // What was dragged there goes back to where it was.
+      // Take back what was dragged.
       if (final) comparison.sync();
       return;
     }
@@ -68,7 +68,7 @@ async function start() {
   const paste = new Paste(new Desk(quick.compiled));
   new Lesson({ state: () => state, change, play: () => comparison.setPlaying(true) });
 
-  /** Everything but the pictures. */
+  /** Updates everything but the pictures. */
   function sync() {
     history.replaceState(null, "", `#${toHash(state)}`);
     designer.sync();
@@ -86,7 +86,7 @@ async function start() {
 
   tools(() => state, change, methods);
   addEventListener("hashchange", () => {
-    // The links to the parts of the page have none; the state stays what it is.
+    // Links to parts of the page hold no state; the present one stays.
     if (location.hash.includes("s=")) state = known(stateFromLink());
     comparison.sync();
     sync();
@@ -173,7 +173,7 @@ function roomOf({ walls, poles }) {
   return Object.keys(ROOMS).find((id) => JSON.stringify([ROOMS[id].walls, ROOMS[id].poles]) === seen) ?? "";
 }
 
-/** @param {State} state @returns {[number, number]} Beside or before the robot, where nothing else is near. */
+/** @param {State} state @returns {[number, number]} A free place beside or in front of the robot. */
 function freeSpot({ robot, radius, walls, poles }) {
   const points = [...walls.flat(), ...poles.map(([x, y]) => [x, y])];
   let best = { far: -1, at: /** @type {[number, number]} */ ([robot.x + radius + 0.4, robot.y]) };

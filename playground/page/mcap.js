@@ -1,8 +1,8 @@
 // @ts-check
 /**
- * Readings as an MCAP file (mcap.dev/spec), for Foxglove and its kin: one message in JSON for each reading. Without
- * chunks, index and check sums, which the format leaves to the writer, a file is a sequence of records, each a letter,
- * its length and its fields; so a library would weigh more than this.
+ * Readings as an MCAP file (mcap.dev/spec) for Foxglove and similar programs: one message in JSON for each reading.
+ * Chunks, index and check sums are optional in the format. Without them a file is a sequence of records, each a letter,
+ * its length and its fields; a library would be larger than this code.
  */
 
 const MAGIC = [0x89, 0x4d, 0x43, 0x41, 0x50, 0x30, 0x0d, 0x0a];
@@ -13,7 +13,7 @@ const CHANNEL = 4;
 const MESSAGE = 5;
 const DATA_END = 15;
 
-/** What a message holds. Times in microseconds; sensors from 0. */
+/** The fields of a message. Times in microseconds; sensors from 0. */
 const READING = {
   type: "object",
   title: "eeruf.Reading",

@@ -1,7 +1,7 @@
 // @ts-check
 /**
- * The firing methods that the page can show, in the order of its menus. A row is shown if the engine knows the method;
- * a method that only the engine knows comes after them, with its own words.
+ * The firing methods that the page can show, in the order of its menus. A method is shown only if the engine knows it;
+ * methods that only the engine knows come last, with the engine's own description.
  */
 
 /** @typedef {{id: string, name: string, does: string, byDefault?: boolean}} Method */
@@ -42,7 +42,7 @@ const TABLE = [
   },
 ];
 
-/** Left out of the menus. */
+/** Methods left out of the menus. */
 const LEFT_OUT = ["sequential_votes", "sequential_median", "far_groups", "median", "eeruf_immediate", "adaptive"];
 
 /** @param {{id: string, does: string}[]} known The methods that the engine knows. @returns {Method[]} */

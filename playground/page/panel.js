@@ -1,5 +1,5 @@
 // @ts-check
-/** One method at work: the room with its sound, its figures, and the readings of the sensor that is looked at. */
+/** One method at work: the room with its sound, its figures, and the readings of the selected sensor. */
 import { drawChart } from "./chart.js";
 import { element } from "./dom.js";
 import { drawFoolers, drawRobot, drawRoom, drawWays } from "./draw-scene.js";
@@ -7,7 +7,7 @@ import { drawBeliefs, drawSound } from "./draw-sound.js";
 import { foolersOf, foolersSentence, percent, readingsOf, sentenceOf } from "./run.js";
 import { View, contextOf } from "./view.js";
 
-/** How near a press must be to choose a sensor, in pixels. */
+/** Largest distance of a press that chooses a sensor, in pixels. */
 const NEAR_PX = 26;
 
 /**
@@ -15,8 +15,8 @@ const NEAR_PX = 26;
  * @property {import("./state.js").State} state
  * @property {import("./view.js").Box} box
  * @property {import("./draw-scene.js").Traced | null} traced
- * @property {number} at In seconds of the simulation.
- * @property {number} until Up to where readings are shown.
+ * @property {number} at Simulated time in seconds.
+ * @property {number} until Time up to which readings are shown.
  * @property {import("./colours.js").Colours} colours
  */
 
@@ -75,7 +75,7 @@ export class Panel {
     this.clear();
   }
 
-  /** Forgets the readings: the room is another now. */
+  /** Forgets the readings, because the room has changed. */
   clear() {
     this.run = null;
     this.readings = [];
@@ -102,7 +102,7 @@ export class Panel {
     );
   }
 
-  /** @param {string} sentence What keeps the method from running. */
+  /** @param {string} sentence The reason why the method does not run. */
   refuse(sentence) {
     this.clear();
     this.root.classList.remove("stale");
@@ -132,7 +132,7 @@ export class Panel {
     drawChart(chart.context, frame, { readings: own, sound_m_s: traced?.sound_m_s ?? 343, at }, colours);
   }
 
-  /** Says in words what the pictures show, for those who hear the page. @param {number} sensor */
+  /** Describes the pictures in words for screen readers. @param {number} sensor */
   describe(sensor) {
     this.foolers.textContent = this.run ? foolersSentence(this.run, sensor) : "";
     this.title.textContent = `What sensor ${sensor + 1} reads`;
@@ -144,7 +144,7 @@ export class Panel {
     );
   }
 
-  /** Where things are on the page, in its pixels. @param {import("./view.js").Box} box */
+  /** Positions of things on the page, in its pixels. @param {import("./view.js").Box} box */
   view(box) {
     return new View(box, this.canvas.clientWidth, this.canvas.clientHeight);
   }

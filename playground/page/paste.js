@@ -1,5 +1,5 @@
 // @ts-check
-/** Part four: a log that is pasted, the answer of `eeruf logs`, and its ranges over time. */
+/** Part four: a pasted log, the answer of `eeruf logs`, and its ranges over time. */
 import { gridStep } from "./chart.js";
 import { readColours, sensorColour } from "./colours.js";
 import { byId, element } from "./dom.js";
@@ -10,7 +10,7 @@ import { contextOf } from "./view.js";
 /** @typedef {{verdict: string, answer: string, form: string, sensors: Sensor[], guesses: string[], damage: string[],
  *   is_timed: boolean}} Pasted */
 
-/** In letters: more is a file for the program. */
+/** Largest number of letters; a longer log is a file for the program. */
 const MOST = 1 << 20;
 
 export class Paste {
@@ -69,7 +69,7 @@ export class Paste {
     this.draw();
   }
 
-  /** Ranges over time; sensors that may be fooled have larger marks. */
+  /** Draws ranges over time; sensors that may be fooled have larger marks. */
   draw() {
     if (!this.found || this.found.sensors.length === 0) return;
     const { sensors, is_timed } = this.found;

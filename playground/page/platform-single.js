@@ -1,10 +1,10 @@
 // @ts-check
 /**
- * Where the engine comes from when the page is one file on a disk: texts within the page. The folder for a server has
+ * The source of the engine when the page is one file on a disk: texts within the page. The folder for a server has
  * `platform.js` instead.
  */
 
-/** @param {string} id @returns {string} What stands in a script element that is not run. */
+/** @param {string} id @returns {string} The contents of a script element that is not run. */
 function embedded(id) {
   return document.getElementById(id)?.textContent ?? "";
 }

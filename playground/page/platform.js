@@ -1,6 +1,6 @@
 // @ts-check
 /**
- * Where the engine comes from when the page is a folder on a server: two files beside it. The page in one file has
+ * The source of the engine when the page is a folder on a server: two files beside the page. The page in one file has
  * `platform-single.js` instead.
  */
 

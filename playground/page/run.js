@@ -1,5 +1,5 @@
 // @ts-check
-/** A run as the engine gives it, made ready for drawing: one object for each reading, in order of firing. */
+/** A run from the engine, prepared for drawing: one object for each reading, in order of firing. */
 
 /**
  * @typedef {object} Reading
@@ -14,7 +14,7 @@
  * @property {string} cause
  * @property {Way | null} way
  * @property {number} emitted
- * @property {number} heard When the echo came; the end of the window for none.
+ * @property {number} heard Time when the echo came; without an echo, the end of the window.
  */
 
 /**
@@ -25,7 +25,7 @@
  * @property {number[]} lengths From the start to each corner.
  */
 
-/** @param {[number, number][]} corners @returns {number[]} How far each corner is from the start along the way. */
+/** @param {[number, number][]} corners @returns {number[]} Distance of each corner from the start along the way. */
 export function lengthsOf(corners) {
   const lengths = [0];
   for (let k = 1; k < corners.length; k++) {
@@ -62,14 +62,14 @@ export function readingsOf(run, window_us) {
   return all.sort((/** @type {Reading} */ a, /** @type {Reading} */ b) => a.fired - b.fired);
 }
 
-/** @param {number} share @returns {string} In percent, as exactly as is worth reading. */
+/** @param {number} share @returns {string} In percent, with as many digits as are worth reading. */
 export function percent(share) {
   const value = 100 * share;
   if (value === 0) return "0 %";
   return `${value < 0.1 ? value.toFixed(2) : value.toFixed(1)} %`;
 }
 
-/** @param {any} run @returns {string} One sentence: what it believes, what it costs. */
+/** @param {any} run @returns {string} One sentence: the quality of its beliefs and their cost. */
 export function sentenceOf(run) {
   const { summary, blind } = run;
   const wrong =
@@ -86,11 +86,11 @@ function isAre(sensors) {
   return `sensors ${names.slice(0, -1).join(", ")} and ${names[names.length - 1]} are`;
 }
 
-/** Words for what was not the sensor's own echo. */
+/** Words for causes other than the sensor's own echo. */
 const FOREIGN = ["crosstalk", "stale", "external"];
 
 /**
- * Who fools one sensor: the ways of foreign sound, the commonest first.
+ * The senders that fool one sensor: the ways of foreign sound, the commonest first.
  * @param {any} run @param {number} sensor
  * @returns {{emitter: number, order: number, wrong: number, accepted: number, corners: [number, number][]}[]}
  */

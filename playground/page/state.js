@@ -1,11 +1,11 @@
 // @ts-check
 /**
- * Everything that the page shows, as one plain object: the room, the robot with its ring, what is compared. A link holds
- * all of it. Lengths in metres, angles in degrees, times in microseconds; sensors from 0.
+ * Everything that the page shows, as one plain object: the room, the robot with its ring, and the methods compared. A
+ * link holds all of it. Lengths in metres, angles in degrees, times in microseconds; sensors from 0.
  */
 
 /**
- * @typedef {object} OwnSchedule A schedule that `design` found, with what it was verified for.
+ * @typedef {object} OwnSchedule A schedule found by `design`, with the requirements that it was verified for.
  * @property {number} period_us
  * @property {number[]} a
  * @property {number[]} b
@@ -23,18 +23,18 @@
  * @property {number} spacing Between two sensors of a line.
  * @property {number} radius Of the robot.
  * @property {string} module
- * @property {number} range How far the sensors should see.
- * @property {number} crosstalk From how far walls may neighbours hear each other.
- * @property {number} jitter How much a good reading varies on a standing robot.
- * @property {number} speed How fast the robot moves, in m/s.
+ * @property {number} range The range that the sensors need.
+ * @property {number} crosstalk Distance up to which a wall may let neighbours hear each other.
+ * @property {number} jitter Variation of a good reading on a standing robot.
+ * @property {number} speed Speed of the robot, in m/s.
  * @property {number} tick The grid of firing times.
  * @property {OwnSchedule | null} own The schedule to watch instead of the paper's.
  * @property {string[]} shown The methods that are compared.
- * @property {number} sensor The sensor that is looked at.
- * @property {number} slow How many times slower than real the sound runs.
+ * @property {number} sensor The selected sensor.
+ * @property {number} slow Factor by which the sound is slower than in reality.
  */
 
-/** The modules that the simulator knows, with what their makers say. */
+/** The modules that the simulator knows, with their makers' figures. */
 export const MODULES = [
   { id: "polaroid_6500", name: "Polaroid 6500", range: 4, retrigger: 0, jitter: 60, crosstalk: 2 },
   { id: "hc_sr04", name: "HC-SR04", range: 4, retrigger: 40_000, jitter: 100, crosstalk: 2.5 },
@@ -135,7 +135,7 @@ const FARTHEST_M = 20;
 const MAX_SHOWN = 4;
 const MAX_PERIOD_US = 268_435_456;
 
-/** @returns {State} What the page begins with: the paper's first experiment. */
+/** @returns {State} The state at the beginning: the paper's first experiment. */
 export function firstState() {
   const { walls, poles, robot } = structuredClone(ROOMS.alcove);
   return {
@@ -169,7 +169,7 @@ export function toMillimetre(metres) {
   return Math.round(metres * 1000) / 1000;
 }
 
-/** What is wrong with a state: one sentence. */
+/** An error in a state: one sentence. */
 export class StateError extends Error {}
 
 /** @param {string} name @param {unknown} value @param {number} least @param {number} most @param {string} [unit] */
@@ -212,7 +212,7 @@ function point(name, value) {
 
 /**
  * @param {any} given Anything, from a link or from a form.
- * @returns {State} The same, checked: nothing else is taken over. Throws `StateError`.
+ * @returns {State} The checked state, without any other properties. Throws `StateError`.
  */
 export function checkedState(given) {
   if (typeof given !== "object" || given === null)
@@ -257,7 +257,7 @@ export function checkedState(given) {
     speed: within("speed"),
     tick: whole("tick", given.tick, 10, 10_000),
     own: given.own ? ownSchedule(given.own, sensors) : null,
-    // Those that the engine does not know are left out by who asks it.
+    // The caller of the engine leaves out methods that the engine does not know.
     shown: list("shown", given.shown, MAX_SHOWN).map(String),
     sensor: whole("sensor", given.sensor, 0, sensors - 1),
     slow: within("slow"),

@@ -1,11 +1,11 @@
 // @ts-check
-/** Part three: the table for one's own robot in the form that it needs, and a link that holds everything. */
+/** Part three: the table for your own robot in the form that it needs, and a link that holds everything. */
 import { byId, element } from "./dom.js";
 import { mcapOf } from "./mcap.js";
 import { pythonText, ringText, sceneText } from "./texts.js";
 
 /**
- * The forms: what the tab says, the file's name, and the text. Those with `needs` are there once a ring is designed.
+ * The forms: the label of the tab, the file's name, and the text. Those with `needs` require a designed ring.
  * @type {{id: string, name: string, file: string, needs: boolean,
  *   text: (state: import("./state.js").State, designed: any) => string}[]}
  */
@@ -19,7 +19,7 @@ const FORMS = [
   { id: "scene", name: "Room", file: "scene.toml", needs: false, text: (state) => sceneText(state) },
 ];
 
-/** What to do with a form. */
+/** Instructions for each form. */
 const USES = new Map([
   ["rust", "A constant that the compiler checks, for the crate eeruf-core."],
   ["c", "A C99 header that includes nothing but <stdint.h>; after eeruf.h, also the schedule for its ring."],
@@ -64,7 +64,7 @@ export class TakeHome {
     this.sync();
   }
 
-  /** @param {any} designed What the designer found; null for a ring that is not designed. */
+  /** @param {any} designed The result of the designer; null for a ring that is not designed. */
   show(designed) {
     this.designed = designed;
     this.form = designed ? FORMS[0] : FORMS[FORMS.length - 1];

@@ -2,7 +2,7 @@
 /** The state in the texts that the engine, the program `eeruf` and Python read: a scene and a ring, in TOML. */
 import { MODULES, spacingOf } from "./state.js";
 
-/** @param {number} number @returns {string} As TOML has it, without the dust of binary fractions. */
+/** @param {number} number @returns {string} The number in TOML, without rounding errors of binary fractions. */
 function toml(number) {
   return String(Number(number.toFixed(6)));
 }
@@ -12,7 +12,7 @@ function tomlList(numbers) {
   return `[${numbers.map(toml).join(", ")}]`;
 }
 
-/** The period that rings are watched at until one is designed: the paper's first experiment. */
+/** The period of rings that are not designed yet: the paper's first experiment. */
 const WATCHED = { period_us: 60_000, t_delta_us: 500, window_us: 36_000 };
 
 /** @param {import("./state.js").State} state @returns {string} The room with the robot, as `eeruf study` reads it. */
@@ -49,8 +49,8 @@ export function sceneText(state) {
 }
 
 /**
- * What the engine says of a scene in the page's words: it counts straight walls and poles from 0, as files do; the page
- * counts what is dragged as one wall, from 1.
+ * Rewrites the engine's error about a scene in the page's words: the engine counts straight walls and poles from 0, as
+ * files do; the page counts everything that is dragged as one wall, from 1.
  * @param {string} sentence
  * @param {import("./state.js").State} state
  * @returns {string}

@@ -16,7 +16,7 @@ export function inMs(us) {
   return `${Number((us / 1000).toFixed(3))} ms`;
 }
 
-/** @param {number} sensors @returns {number} How high the diagram of this many sensors is, in units of the picture. */
+/** @param {number} sensors @returns {number} Height of the diagram for this many sensors, in units of the picture. */
 export function timingHeight(sensors) {
   return TOP + BOTTOM + sensors * laneHeight(sensors);
 }
@@ -36,7 +36,7 @@ function soundAge({ period_us, fire_us }, sensor, at) {
   return ages.reduce((one, other) => (one.since <= other.since ? one : other));
 }
 
-/** @param {Timing} timing @param {number} sensor @param {number} at @returns {string} What a sensor does at a moment. */
+/** @param {Timing} timing @param {number} sensor @param {number} at @returns {string} The sensor's activity then. */
 export function saidAt(timing, sensor, at) {
   const { since, phase } = soundAge(timing, sensor, at);
   const [a, b] = timing.fire_us.map((times) => times[sensor]);
@@ -97,7 +97,7 @@ export function drawTiming(canvas, timing, cursor, colours) {
     fire_us.forEach((times, phase) => {
       const fire = phase * period_us + times[sensor];
       context.fillStyle = colours.listening;
-      // What the second period leaves over is heard in the first.
+      // A window that passes the end of the second period continues in the first.
       for (const from of [fire, fire - 2 * period_us]) {
         const [start, end] = [Math.max(0, from), Math.min(2 * period_us, from + window_us)];
         if (end > start) context.fillRect(x(start), top + lane * 0.3, x(end) - x(start), lane * 0.4);

@@ -1,5 +1,5 @@
 // @ts-check
-/** Which part of the plane a picture shows, and where a point of it lies in pixels. */
+/** The part of the plane that a picture shows, and the pixel of each point. */
 
 /** @typedef {{x: number, y: number}} Spot */
 /** @typedef {{left: number, top: number, width: number, height: number}} Box In metres; `top` is the largest y. */
@@ -7,7 +7,7 @@
 const MARGIN_M = 0.3;
 const SMALLEST_M = 1.2;
 
-/** @param {import("./state.js").State} state @returns {Box} What holds all that there is. */
+/** @param {import("./state.js").State} state @returns {Box} A box around everything in the room. */
 export function boxOf(state) {
   const { robot, radius } = state;
   const points = [

@@ -1,5 +1,5 @@
 // @ts-check
-/** The way to the engine in WebAssembly: a question and its answer are texts. Knows neither page nor worker. */
+/** The interface to the engine in WebAssembly: a question and its answer are texts. Knows neither page nor worker. */
 
 /**
  * @typedef {object} Engine
@@ -29,6 +29,6 @@ export function askEngine(engine, question) {
   const at = engine.reserve(bytes.length);
   new Uint8Array(engine.memory.buffer, at, bytes.length).set(bytes);
   const length = engine.ask();
-  // The memory may have grown, and its old buffer is gone then.
+  // The memory may have grown, which detaches its old buffer.
   return new TextDecoder().decode(new Uint8Array(engine.memory.buffer, engine.answer_at(), length));
 }

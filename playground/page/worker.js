@@ -1,11 +1,11 @@
 // @ts-check
 /**
- * The worker: holds the engine and answers one question after the other. It is given the compiled engine first, then
- * questions `{id, question}`; it answers `{id, text}`, `{id, crash}` and now and then `{id, share, nodes}`.
+ * The worker: holds the engine and answers one question at a time. It receives the compiled engine first, then
+ * questions `{id, question}`; it answers `{id, text}` or `{id, crash}`, and reports progress as `{id, share, nodes}`.
  */
 import { askEngine, startEngine } from "./wasm.js";
 
-/** Progress is said at most this often, in milliseconds. */
+/** Least time between two reports of progress, in milliseconds. */
 const SAID_EVERY_MS = 50;
 
 /** @type {Promise<import("./wasm.js").Engine> | undefined} */
@@ -35,7 +35,7 @@ self.onmessage = async ({ data }) => {
     saidAt = performance.now();
     postMessage({ id: data.id, text: askEngine(ready, data.question) });
   } catch (error) {
-    // What the engine's memory looks like now is not known: the next question gets a new one.
+    // The state of the engine's memory is unknown now: the next question gets a new engine.
     engine = undefined;
     postMessage({ id: data.id, crash: String(error) });
   }

@@ -12,8 +12,8 @@ use serde::Serialize;
 
 use crate::progress::progress;
 
-/// Search budget on the page, in nodes, and the smaller one for more sensors than [`FEW`], when each node takes many
-/// times as long: about a minute.
+/// Search budget on the page in nodes, and a smaller one for more than [`FEW`] sensors, whose nodes take many times as
+/// long: about a minute in either case.
 const BUDGET: u64 = 2_000_000;
 const BUDGET_OF_MANY: u64 = 50_000;
 const FEW: usize = 24;
@@ -21,15 +21,15 @@ const FEW: usize = 24;
 const ATLAS: &str = include_str!(concat!(env!("OUT_DIR"), "/atlas.txt"));
 /// Budget of nodes for the certificate's proof, as by default in `eeruf design`.
 const CERTIFICATE_BUDGET: usize = 1_000_000;
-/// Number of nodes of a proof between two reports to the page.
+/// Number of a proof's nodes between two reports to the page.
 const SAID_EVERY: usize = 256;
 
 /// A designed ring. Times in microseconds.
 #[derive(Serialize)]
 pub(crate) struct DesignAnswer {
-    /// The output of `eeruf design --json`; `seconds` is 0, as a page has no clock for it.
+    /// The output of `eeruf design --json`; `seconds` is 0, because the page measures no time.
     found: FoundJson,
-    /// The change that `t_delta` must cover, and the largest that the schedule allows.
+    /// The change that `t_delta` must cover, and the largest change that the schedule allows.
     t_delta_us: u32,
     max_t_delta_us: Option<u32>,
     /// The required and the actual smallest interval between two neighbours.
@@ -43,7 +43,7 @@ pub(crate) struct DesignAnswer {
     /// Speed of the robot above which good readings differ by more than `t_delta`.
     speed_m_s: f64,
     fire_us: [Vec<u32>; 2],
-    /// True if the verifier, which shares no code with the search, agrees.
+    /// True if the verifier, which shares no code with the search, accepts the schedule.
     verified: bool,
     rust: String,
     c: String,
@@ -98,14 +98,14 @@ pub(crate) fn design(ring: &str) -> Result<DesignAnswer, String> {
     })
 }
 
-/// Returns changes that would shorten the period of this answer.
+/// Returns the changes that would shorten the period of this ring.
 pub(crate) fn faster(ring: &str) -> Result<Vec<What>, String> {
     let relaxed = shortest(ring)?.what_if(&mut say).map_err(|error| error.to_string())?;
     let what = |WhatIf { need, period, proven }| What { need, period_us: period.map(Micros::as_micros), proven };
     Ok(relaxed.into_iter().map(what).collect())
 }
 
-/// Returns the certificate of this answer.
+/// Returns the certificate that the period of this ring is the shortest.
 pub(crate) fn certificate(ring: &str) -> Result<Certificate, String> {
     let design = shortest(ring)?;
     let mut calls = 0;
@@ -124,7 +124,7 @@ pub(crate) fn certificate(ring: &str) -> Result<Certificate, String> {
 }
 
 thread_local! {
-    /// The last answer, since later questions refer to it.
+    /// The last answer, kept for later questions about the same ring.
     static LAST: RefCell<Option<(String, RingDesign)>> = const { RefCell::new(None) };
 }
 

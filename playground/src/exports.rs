@@ -11,7 +11,7 @@ thread_local! {
 }
 
 /// Reserves room for a question of this many bytes, valid until the next call.
-// SAFETY: no other function of that name exists in this module; so for the other two.
+// SAFETY: no other function in this module has this name; likewise for the other two.
 #[unsafe(no_mangle)]
 pub(crate) extern "C" fn reserve(bytes: usize) -> *mut u8 {
     QUESTION.with_borrow_mut(|question| {

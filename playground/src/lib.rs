@@ -4,10 +4,10 @@
 //! | file | content |
 //! |---|---|
 //! | `exports` | what JavaScript calls: a text goes in, a text comes out |
-//! | `question` | which questions there are |
+//! | `question` | the questions that the page can ask |
 //! | `trace` | every critical path of a ring, with its corners |
 //! | `run` | a scene under a firing method: readings, figures, who fooled whom |
-//! | `paste` | whether a pasted log shows crosstalk, as `eeruf logs` says it |
+//! | `paste` | the crosstalk in a pasted log, as reported by `eeruf logs` |
 //! | `design` | the shortest period for a ring, its proof, its certificate, its source texts |
 
 mod design;

@@ -16,10 +16,10 @@ pub(crate) struct Pasted {
     answer: String,
     form: String,
     sensors: Vec<Sensor>,
-    /// Guesses with the option of the program that overrides each.
+    /// Guesses, each with the program's option that overrides it.
     guesses: Vec<String>,
     damage: Vec<String>,
-    /// True if points have a time in seconds; otherwise they have the number of the reading.
+    /// True if points have a time in seconds; otherwise their first coordinate is the number of the reading.
     is_timed: bool,
 }
 
@@ -38,7 +38,7 @@ pub(crate) fn paste(text: &str) -> Result<Pasted, String> {
     let mut doctor = Doctor::new(options.speed_of_sound);
     let (mut sensors, mut first_ns): (Vec<Sensor>, _) = (vec![], None);
     let mut is_timed = true;
-    // A paste may end in the middle of a line, which is no damage.
+    // A paste may end in the middle of a line, which is not damage.
     let whole = text.rsplit_once('\n').filter(|(_, rest)| !rest.is_empty()).map_or(text, |(whole, _)| whole);
     let input = whole.as_bytes().chain(&b"\n"[..]);
     let report = read_text(input, Path::new("the paste"), &options, |report, reading| {

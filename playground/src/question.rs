@@ -1,4 +1,4 @@
-//! The questions that the page asks, and how answers are written.
+//! The questions that the page asks, and the form of the answers.
 
 use std::path::Path;
 

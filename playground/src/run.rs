@@ -24,7 +24,7 @@ pub(crate) struct Run {
     blind: Vec<usize>,
     /// Counts for each sensor: readings, accepted and right ones, accepted and wrong ones.
     tally: Vec<[u32; 3]>,
-    /// Attributions of wrong readings, the commonest first.
+    /// Sources of wrong readings, the commonest first.
     fooled: Vec<Attribution>,
     /// The readings of the first seconds, as arrays of equal length.
     readings: Shown,
@@ -40,7 +40,7 @@ struct Shown {
     fired_s: Vec<f64>,
     /// `null` for no echo.
     t_echo_us: Vec<f64>,
-    /// Readings of the sensor alone; `null` for nothing.
+    /// Readings of the sensor alone; `null` for no echo.
     reference_us: Vec<f64>,
     /// One of `accepted`, `rejected`, `none` (nothing heard, believed or not), `first` (not yet compared).
     verdict: Vec<&'static str>,

@@ -6,7 +6,7 @@ use serde::Serialize;
 /// The scene and the paths of sound. Metres and radians; sensors from 0.
 #[derive(Serialize)]
 pub(crate) struct Traced {
-    /// Place and heading of each sensor.
+    /// Position and heading of each sensor.
     sensors: Vec<[f64; 3]>,
     body_radius_m: f64,
     sound_m_s: f64,

@@ -1,5 +1,5 @@
 // @ts-check
-/** What the tests of the page share: a browser, a server for the folder, and what the console said. */
+/** Functions that the tests of the page share: a browser, a server for the folder, and the console's messages. */
 import { createServer } from "node:http";
 import { readFileSync } from "node:fs";
 import { extname, join, normalize } from "node:path";
@@ -12,7 +12,7 @@ export const SINGLE = `file://${join(BUILT, "who-fools-whom.html")}`;
 /** @type {Record<string, string>} */
 const KINDS = { ".html": "text/html", ".js": "text/javascript", ".css": "text/css", ".wasm": "application/wasm" };
 
-/** A lecturer's page, which embeds the page in the state that stands after `?`. */
+/** A lecturer's page, which embeds the page in the state that follows `?`. */
 export const LECTURE = "/lecture.html";
 
 /** @returns {Promise<{url: string, close: () => void}>} The folder on a server of this machine. */
@@ -41,7 +41,7 @@ export async function serve() {
 
 /** @returns {Promise<import("playwright-core").Browser>} */
 export function launch() {
-  // Debian's wrapper and a container's root user both need telling.
+  // Debian's wrapper and a container's root user both need these.
   return chromium.launch({ executablePath: process.env.PAGE_BROWSER, args: ["--no-sandbox", "--disable-gpu"] });
 }
 

@@ -1,12 +1,12 @@
 // @ts-check
-/** Whether the colours tell apart without colour vision, and whether text is legible, in light and dark. */
+/** Colours differ without colour vision, and text is legible, in light and dark. */
 import assert from "node:assert/strict";
 import { readFileSync } from "node:fs";
 import { test } from "node:test";
 
 const STYLE = readFileSync(new URL("../page/style.css", import.meta.url), "utf8");
 
-/** How people without one kind of cone see linear RGB: Machado, Oliveira and Fernandes 2009, severity 1. */
+/** Linear RGB as seen without one kind of cone: Machado, Oliveira and Fernandes 2009, severity 1. */
 const VISIONS = {
   usual: [
     [1, 0, 0],

@@ -1,5 +1,5 @@
 // @ts-check
-/** The engine in Node against the program `eeruf`, and what it says of bad input. */
+/** The engine in Node compared with the program `eeruf`, and its answers to bad input. */
 import assert from "node:assert/strict";
 import { execFileSync, spawnSync } from "node:child_process";
 import { mkdtempSync, readFileSync, writeFileSync } from "node:fs";
@@ -31,7 +31,7 @@ function ask(question) {
   return JSON.parse(askEngine(engine, question));
 }
 
-/** @param {string[]} words @returns {any} What the program prints with `--json`. */
+/** @param {string[]} words @returns {any} The program's output with `--json`. */
 function program(...words) {
   return JSON.parse(execFileSync(PROGRAM, [...words, "--json"], { encoding: "utf8", maxBuffer: 1 << 28 }));
 }
@@ -43,7 +43,7 @@ function file(name, text) {
   return path;
 }
 
-/** Twenty rings: the project's own, and the page's with other numbers. */
+/** Twenty rings: the project's own, and variants of the page's. */
 const RINGS = [
   ...["paper-12", "ring-24", "labmate-8", "hc-sr04-8"].map((name) =>
     readFileSync(join(ROOT, `rings/${name}.toml`), "utf8"),
@@ -99,7 +99,7 @@ test("of a ring whose search takes long the page's atlas answers, as the program
   assert.equal(progressCalls, before);
   const printed = program("design", "--period-only", file("atlas.toml", ring));
   assert.deepEqual([ours.found.schedule, printed.from_atlas], [printed.schedule, true]);
-  // What a key press has time for is not in it.
+  // Rings that are searched within a key press are not in it.
   assert.equal(ask({ ask: "design", ring: ring.replace("sensors = 20", "sensors = 8") }).ok.found.from_atlas, false);
 });
 
@@ -111,12 +111,12 @@ test("the page's certificate is to the letter that of the program", () => {
   const asked = ["design", "--period-only", "--no-atlas", file("certified.toml", ring)];
   execFileSync(PROGRAM, [...asked, "--certificate", path], { stdio: "pipe" });
   assert.equal(certificate.text, readFileSync(path, "utf8"));
-  // The checker that the page hands out accepts what it hands out.
+  // The page's checker accepts the page's certificate.
   const [checker, given] = [file("check_period.py", certificate.checker), file("ring.certificate", certificate.text)];
   assert.equal(execFileSync("python3", [checker, given], { encoding: "utf8" }).trim(), certificate.says);
 });
 
-/** Holds each of our figures that the program has too against it. @param {any} ours @param {any} theirs @param {string} where */
+/** Compares our figures with those of the program. @param {any} ours @param {any} theirs @param {string} where */
 function sameFigures(ours, theirs, where) {
   const shared = Object.keys(ours).filter((name) => name in theirs);
   assert.ok(shared.length >= 15, `${where}: ${shared.join(" ")}`);
@@ -168,7 +168,7 @@ test("in each room the critical paths are to the bit those of the program", () =
         [theirs.emitter[n], theirs.receiver[n], theirs.order[n]],
       );
       assert.deepEqual([path.length_m, path.level_db], [theirs.length_m[n], theirs.level_db[n]]);
-      // The corners are those of a path of that length.
+      // The corners belong to a path of that length.
       const length = path.corners
         .slice(1)
         .reduce(
@@ -293,7 +293,7 @@ test("a link gives back the state that it was made of, and what is wrong with on
   assert.equal(wrong({ walls: [[[0, 0]]] }), "wall 1 has 1 points; expected at least 2");
   assert.equal(wrong({ robot: { x: null, y: 0, heading: 0 } }), "robot, x is null; expected a number from -20 to 20 m");
   assert.equal(wrong({ own: { ...own, a: [1] } }), "own schedule, a has 1 times; expected 8, one for each sensor");
-  // A method that the engine does not know is left out by who asks it.
+  // A caller leaves out methods that the engine does not know.
   assert.equal(wrong({ shown: ["magic"] }), "nothing");
   assert.ok(!methodsOf([{ id: "flow", does: "" }]).some((method) => method.id === "magic"));
 });
@@ -304,7 +304,7 @@ test("a paste gets the program's answer, word for word", () => {
     const { ok } = ask({ ask: "paste", text: readFileSync(path, "utf8") });
     const { status, stdout } = spawnSync(PROGRAM, ["logs", path], { encoding: "utf8" });
     assert.equal(status, { "none seen": 0, crosstalk: 1, "cannot tell": 3 }[/** @type {string} */ (ok.verdict)], name);
-    // The program breaks lines where the terminal ends.
+    // The program breaks lines at the terminal's width.
     const words = (/** @type {string} */ said) => said.split(/\s+/);
     assert.deepEqual(words(stdout.split("\n\n")[0]), words(ok.answer), name);
     assert.ok(ok.sensors.every((/** @type {any} */ sensor) => sensor.points.length > 0), name);

@@ -13,7 +13,7 @@ import { firstState } from "../page/state.js";
 import { BUILT, LECTURE, SINGLE, launch, open, ready, serve } from "./browser.js";
 
 const LONG = Boolean(process.env.PAGE_LONG);
-/** A page and all that it loads, gzipped: by the compilers that CI installs; by others a twentieth more. */
+/** A page and all that it loads, gzipped: by the compilers that CI installs; others make it a twentieth larger. */
 const MOST_BYTES = 950_000 * (process.env.EERUF_EXACT_SIZES ? 1 : 1.05);
 
 const browser = await launch();
@@ -53,7 +53,7 @@ async function design(page) {
   );
 }
 
-/** Tests wait for the browser most of the time; one after the other only where a figure is printed. */
+/** Tests mostly wait for the browser; they run one after the other only where a figure is printed. */
 describe("the page in a browser", { concurrency: LONG ? 1 : 4 }, () => {
   test(`both forms of the page are within ${MOST_BYTES / 1000} kB gzipped`, () => {
     const gzipped = (/** @type {string} */ path) => gzipSync(readFileSync(path), { level: 9 }).length;
@@ -79,7 +79,7 @@ describe("the page in a browser", { concurrency: LONG ? 1 : 4 }, () => {
     assert.ok(conventional > 30 && eeruf < 2 && flow < 2, String(verdicts));
     assert.match(verdicts[1], /; sensors .* are blind\.$/);
     assert.match(verdicts[2], /; no sensor is blind\.$/);
-    // Whoever hears the page hears what the pictures show.
+    // The pictures have labels for screen readers.
     const labels = await page
       .locator(".panel canvas")
       .evaluateAll((all) => all.map((canvas) => canvas.getAttribute("aria-label")));
@@ -92,7 +92,7 @@ describe("the page in a browser", { concurrency: LONG ? 1 : 4 }, () => {
 
   test("a paste is answered with what to try next, a picture, and nothing sent", async () => {
     const { context, page, troubles, requests } = await open(browser, SINGLE, { offline: true });
-    // Module 2 fires when module 1 has heard its echo: their sum stays.
+    // Module 2 fires when module 1 has heard its echo: the sum of the two ranges is constant.
     const rows = Array.from({ length: 200 }, (_, n) => {
       const front = 60 + 40 * Math.sin(n / 7) + 20 * Math.sin(n / 3);
       return `front: ${front.toFixed(1)} cm, left: ${(210 - front).toFixed(1)} cm`;
@@ -274,13 +274,13 @@ describe("the page in a browser", { concurrency: LONG ? 1 : 4 }, () => {
     assert.deepEqual(await stateOf(page), state);
     assert.equal(await page.locator(".panel").count(), 3);
     assert.equal(await page.locator("#look").inputValue(), "3");
-    // A broken one, put into the address of the open page.
+    // A broken link is put into the address of the open page.
     await page.goto(link.slice(0, -9));
     await assertText(page.locator("#page-says"), /^The link is cut short or changed; expected one that this page made\. /);
     assert.deepEqual(await stateOf(page), firstState());
     assert.deepEqual(troubles, []);
     await context.close();
-    // And one that the page is opened with.
+    // And the page is opened with another.
     const other = await open(browser, `${server.url}#${toHash(/** @type {any} */ ({ ...state, sensors: 99 }))}`);
     assert.equal(
       await other.page.locator("#page-says").textContent(),
@@ -312,14 +312,14 @@ describe("the page in a browser", { concurrency: LONG ? 1 : 4 }, () => {
     await ready(page);
     await expectBoth("in the lesson");
     await page.locator("#lesson-end").click();
-    // The button has the last word over the system.
+    // The button overrides the system.
     await page.locator("#theme").click();
     assert.ok(await isDark(page));
     assert.deepEqual(troubles, []);
     await context.close();
   });
 
-  /** @param {import("playwright-core").Page} page @returns {Promise<boolean>} Whether the paper is dark. */
+  /** @param {import("playwright-core").Page} page @returns {Promise<boolean>} True if the paper is dark. */
   async function isDark(page) {
     const paper = await page.evaluate(() => getComputedStyle(document.body).backgroundColor);
     return Number(paper.match(/\d+/)?.[0]) < 128;
@@ -338,7 +338,7 @@ describe("the page in a browser", { concurrency: LONG ? 1 : 4 }, () => {
         () => document.documentElement.scrollWidth - document.documentElement.clientWidth,
       );
       assert.equal(sticksOut, 0, `${width} pixels`);
-      // Nor does a picture shrink to nothing.
+      // No picture shrinks to nothing either.
       const rooms = await page.locator(".room").evaluateAll((all) => all.map((room) => room.clientHeight));
       assert.ok(
         rooms.every((high) => high >= 250),
@@ -391,7 +391,7 @@ describe("the page in a browser", { concurrency: LONG ? 1 : 4 }, () => {
     ];
     for (const [step, methods] of expected.entries()) {
       assert.match((await page.locator("#lesson-title").textContent()) ?? "", new RegExp(`^${step + 1} of 7: `));
-      // At once and not by gliding there.
+      // The picture jumps there instead of gliding.
       assert.deepEqual((await stateOf(page)).shown, methods);
       await ready(page);
       await expectStill(page, `step ${step + 1}`);
@@ -408,7 +408,7 @@ describe("the page in a browser", { concurrency: LONG ? 1 : 4 }, () => {
     const { context, page, troubles } = await open(browser, `${server.url}#${known}`);
     await page.locator("#design-go").click();
     await assertText(page.locator("#proof"), /^proven, from the atlas: no schedule/);
-    // What would be faster is still sought, or was found meanwhile.
+    // The search for a faster ring still runs, or has ended meanwhile.
     await page.locator("#design-cancel").click({ timeout: 3000 }).catch(() => {});
     await page.locator("#ring-sensors").fill("4");
     await page.locator("#ring-sensors").press("Enter");
@@ -511,7 +511,7 @@ describe("the page in a browser", { concurrency: LONG ? 1 : 4 }, () => {
         () => target.press(keys[random(keys.length)], { timeout: 500 }),
         drag,
       ];
-      // What is covered or gone by now cannot be pressed; that is no fault of the page.
+      // An element that is covered or gone by now cannot be pressed; that is no fault of the page.
       await does[kind]().catch(() => {});
       if (random(40) === 0)
         await page.evaluate(
@@ -582,7 +582,7 @@ describe("the page in a browser", { concurrency: LONG ? 1 : 4 }, () => {
       await page.evaluate(() => document.fonts.ready);
       await page.screenshot({ path: join(folder, `${name}-top.png`) });
       if (name === "desktop") {
-        // For the README: down to the readings of the sensor that is looked at.
+        // For the README: down to the readings of the selected sensor.
         const end = await page
           .locator(".foolers")
           .last()

@@ -5,39 +5,39 @@
 //!   [`Tracer`] does so again and again without allocating.
 //! - [`Transducer`], [`Piston`], [`Material`] and [`Air`] turn a path into an amplitude; [`CrosstalkMatrix`] does so
 //!   for a whole ring and says who hears whom.
-//! - [`reception`] solves for the moment at which sound meets a moving receiver; [`Scene::contact`] for what a robot
-//!   touches.
-//! - A [`Simulation`] goes on step by step under the caller's own controller, and with the caller's own
-//!   [`FiringMethod`] and [`Filter`] where they are given ([`Own`]).
+//! - [`reception`] solves for the moment at which sound meets a moving receiver; [`Scene::contact`] finds the objects
+//!   that a robot touches.
+//! - A [`Simulation`] runs step by step under the caller's own controller, and with the caller's own [`FiringMethod`]
+//!   and [`Filter`] if given ([`Own`]).
 //! - A [`World`] puts robots with rings, clocks and motions into a scene, from a TOML file or from code; [`simulate()`]
 //!   runs the ring of `eeruf-core` through simulated time under a [`Method`]. Every one of the [`Readings`] knows what
 //!   caused it; [`Summary`] counts the errors and [`Attribution`] says who was fooled by whom.
 //!
-//! A world's [`Physics`] lists its effects; `docs/explanation/physics.md` in the repository explains what is computed
-//! and what is left out.
+//! A world's [`Physics`] lists its effects; `docs/explanation/physics.md` in the repository explains which effects are
+//! computed and which are left out.
 //!
-//! The modules, each of which uses only those before it:
+//! The modules; each uses only those before it:
 //!
-//! | room | what is in it |
+//! | module | contents |
 //! |---|---|
-//! | [`threads`] | work on all cores, and how it ends early |
+//! | [`threads`] | work on all cores, and early cancellation |
 //! | [`geometry`] | points, mirrors, Alhazen's problem |
 //! | [`scene`] | walls, poles and air, with the mesh over them |
 //! | [`maps`] | occupancy grids as walls |
-//! | [`acoustics`] | how loud: directivity, reflection, spreading, diffraction |
-//! | [`tracing`] | which paths: beam tree, paths over poles, what is too faint, who hears whom |
-//! | [`world`] | who is there: robots, motions, clocks, noise, the TOML file |
+//! | [`acoustics`] | loudness: directivity, reflection, spreading, diffraction |
+//! | [`tracing`] | paths: beam tree, paths over poles, limits of audibility, crosstalk matrix |
+//! | [`world`] | robots, motions, clocks, noise, the TOML file |
 //! | [`methods`] | the table of firing methods and their schedules |
 //! | [`results`] | readings, summary, attribution |
-//! | [`simulation`] | what happens in time |
-//! | [`navigation`] | grid, histogram and platform; uses only the first two |
-//! | [`experiments`] | the paper's two sets |
+//! | [`simulation`] | events in simulated time |
+//! | [`navigation`] | grid, histogram and platform; uses only `geometry` and `scene` |
+//! | [`experiments`] | the paper's two sets, and Set III with several robots |
 //!
 //! Paths are found with a beam tree over a constrained triangulation of the scene, poles with Alhazen's problem;
 //! positions are good to about 1e-12 of the scene's size and sets of paths are complete. Units are metres, seconds and
 //! radians; walls, poles, sensors and receivers are counted from 0.
 //!
-//! The method that all this is for: J. Borenstein and Y. Koren, "Error Eliminating Rapid Ultrasonic Firing for Mobile
+//! The method: J. Borenstein and Y. Koren, "Error Eliminating Rapid Ultrasonic Firing for Mobile
 //! Robot Obstacle Avoidance", IEEE Transactions on Robotics and Automation 11(1), 1995, pp. 132-138.
 //!
 //! ```

@@ -10,7 +10,7 @@ use std::{
 
 use rayon::{ThreadPool, ThreadPoolBuildError, ThreadPoolBuilder, prelude::*};
 
-/// A thread pool for parallel iterators, separate for each process: no thread survives a `fork`, so a child that used
+/// A thread pool for parallel iterators, separate for each process. No thread survives a `fork`, so a child that used
 /// its parent's pool would wait forever. Rayon's global pool is never used.
 #[derive(Debug, Default)]
 pub struct Threads {
@@ -20,7 +20,7 @@ pub struct Threads {
 }
 
 impl Threads {
-    /// A pool of this many threads, started on demand; 0 for one per core.
+    /// Makes a pool of this many threads, started on demand; 0 for one per core.
     pub const fn new(number: usize) -> Self {
         Self { number, pool: Mutex::new(None) }
     }
@@ -31,10 +31,10 @@ impl Threads {
         Self::new(self.number)
     }
 
-    /// The pool of this process.
+    /// Returns the pool of this process.
     ///
     /// # Errors
-    /// If no thread can be started.
+    /// No thread can be started.
     pub fn pool(&self) -> Result<Arc<ThreadPool>, ThreadPoolBuildError> {
         let mut pool = self.pool.lock().unwrap_or_else(PoisonError::into_inner);
         match &*pool {
@@ -47,7 +47,7 @@ impl Threads {
     }
 }
 
-/// Drops a pool, unless it is the parent's, whose threads do not exist in this process.
+/// Drops a pool; a parent's pool is only forgotten, since its threads do not exist in this process.
 fn forget(pool: &mut Option<(u32, Arc<ThreadPool>)>) {
     if let Some((process, pool)) = pool.take()
         && process != process::id()
@@ -62,12 +62,12 @@ impl Drop for Threads {
     }
 }
 
-/// Runs work whose parallel iterators use all cores: on the caller's pool if there is one, otherwise on its own.
+/// Runs work whose parallel iterators use all cores: on the caller's pool if there is one, otherwise on a new one.
 pub(crate) fn on_all_cores<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     if rayon::current_thread_index().is_some() {
         return work();
     }
-    // Where no thread can be started, on this one.
+    // If no thread can be started, the work runs on this one.
     let alone = || ThreadPoolBuilder::new().num_threads(1).use_current_thread().build().map(Arc::new);
     match Threads::new(0).pool().or_else(|_| alone()) {
         Ok(pool) => pool.install(work),
@@ -75,7 +75,7 @@ pub(crate) fn on_all_cores<T: Send>(work: impl FnOnce() -> T + Send) -> T {
     }
 }
 
-/// Runs several simulations at once on all cores; the answers are in the order of the jobs and do not depend on the
+/// Runs several simulations at once on all cores. The answers are in the order of the jobs and do not depend on the
 /// number of threads.
 ///
 /// ```

@@ -18,7 +18,7 @@ pub(super) fn named<T>(methods: &[Entry], of: impl IntoIterator<Item = T>) -> Ve
     methods.iter().map(|entry| entry.name().to_owned()).zip(of).collect()
 }
 
-/// The runs of each method, from those of each scene.
+/// Regroups the runs of each scene by method.
 pub(super) fn transposed<T>(methods: usize, scenes: Vec<Vec<T>>) -> Vec<Vec<T>> {
     let mut runs: Vec<Vec<T>> = (0..methods).map(|_| Vec::with_capacity(scenes.len())).collect();
     for scene in scenes {

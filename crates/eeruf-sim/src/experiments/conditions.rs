@@ -19,7 +19,7 @@ pub struct Conditions {
 }
 
 impl Conditions {
-    /// Conditions from an optional room and a gain.
+    /// Makes conditions from an optional room and a gain.
     pub fn of(room: Option<&Room>, gain: GainProfile) -> Self {
         let gain = Some(gain).filter(|gain| *gain != GainProfile::Constant);
         Self { height: room.map(|_| "room"), gain: gain.map(GainProfile::name) }

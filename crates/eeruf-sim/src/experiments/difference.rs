@@ -16,8 +16,8 @@ pub struct Difference {
     pub mean_95: [f64; 2],
     /// Median difference.
     pub median: f64,
-    /// At least a 95 % confidence interval of the median: the interval of the sign test, exact for any
-    /// distribution. `None` for fewer than six scenes, which have none.
+    /// A confidence interval of the median of at least 95 %: the interval of the sign test, exact for any distribution.
+    /// `None` for fewer than six scenes, which are too few for one.
     pub median_95: Option<[f64; 2]>,
     /// Number of scenes in which the difference is below 0.
     pub less: usize,
@@ -28,7 +28,7 @@ pub struct Difference {
 }
 
 impl Difference {
-    /// The differences of a figure, one for each scene; `None` without any.
+    /// Computes the figures from the differences, one for each scene; `None` if there are none.
     ///
     /// ```
     /// use eeruf_sim::experiments::Difference;
@@ -49,7 +49,7 @@ impl Difference {
     }
 }
 
-/// Number of values, of `n`, below and above the sign test's 95 % interval of the median.
+/// Number of the `n` values on either side of the sign test's 95 % interval of the median.
 fn outside(n: usize) -> Option<usize> {
     let mut below = 0.0;
     let beyond = (0..n).find(|&k| {

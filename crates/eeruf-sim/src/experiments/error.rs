@@ -36,7 +36,7 @@ pub enum ExperimentError {
     Stopped,
 }
 
-/// The numbers of geometries or courses, at least one.
+/// Returns the numbers of geometries or courses, at least one.
 pub(super) fn numbers(first: u64, seeds: u64) -> Result<Range<u64>, ExperimentError> {
     if seeds == 0 {
         return Err(ExperimentError::NoSeeds);

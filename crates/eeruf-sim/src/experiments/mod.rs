@@ -1,5 +1,5 @@
 //! The paper's experiments, made repeatable: Set I before three walls, Set II through courses of poles; and Set III
-//! among robots of one make. It uses all other modules, and none uses it.
+//! among robots of one make. This module uses all others, and none uses it.
 
 mod by_name;
 mod conditions;

@@ -11,12 +11,12 @@ pub(super) struct Progress<'a> {
 }
 
 impl<'a> Progress<'a> {
-    /// Progress for this number of simulations.
+    /// Makes a reporter for this number of simulations.
     pub(super) fn new(all: u64, keep_going: &'a (dyn Fn(f64) -> bool + Sync)) -> Self {
         Self { keep_going, all, done: AtomicU64::new(0), stopped: AtomicBool::new(false) }
     }
 
-    /// Returns true to continue; it is also called in the middle of a simulation.
+    /// Returns true to continue; also called in the middle of a simulation.
     pub(super) fn go_on(&self) -> bool {
         let share = self.done.load(Ordering::Relaxed) as f64 / self.all as f64;
         let going = !self.stopped() && (self.keep_going)(share);
@@ -26,7 +26,7 @@ impl<'a> Progress<'a> {
         going
     }
 
-    /// Notes that one simulation has ended.
+    /// Counts a finished simulation.
     pub(super) fn one_done(&self) {
         self.done.fetch_add(1, Ordering::Relaxed);
         self.go_on();

@@ -29,7 +29,7 @@ const SAMPLES: usize = 1000;
 const SEED: u64 = 1979;
 
 impl Spread {
-    /// The quantiles of some values; `None` without any.
+    /// Computes the quantiles of some values; `None` without any.
     ///
     /// ```
     /// use eeruf_sim::experiments::Spread;
@@ -48,12 +48,12 @@ impl Spread {
     }
 }
 
-/// The mean of some values; 0 without any.
+/// Returns the mean of some values; 0 without any.
 pub(super) fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len().max(1) as f64
 }
 
-/// The 95 % interval of a figure of some values, by the percentile bootstrap (Efron, 1979); `[0, 0]` without values.
+/// Returns the 95 % interval of a figure by the percentile bootstrap (Efron, 1979); `[0, 0]` without values.
 pub(super) fn interval_95(values: &[f64], figure: impl Fn(&mut [f64]) -> f64) -> [f64; 2] {
     if values.is_empty() {
         return [0.0; 2];
@@ -70,9 +70,9 @@ pub(super) fn interval_95(values: &[f64], figure: impl Fn(&mut [f64]) -> f64) ->
     [0.025, 0.975].map(|share| quantile(&mut figures, share))
 }
 
-/// The 95 % confidence interval of a share that was seen in `count` of `of` trials: Wilson's interval (E. B. Wilson,
+/// Returns the 95 % confidence interval of a share seen in `count` of `of` trials: Wilson's interval (E. B. Wilson,
 /// "Probable inference, the law of succession, and statistical inference", J. Am. Stat. Assoc. 22, 1927). Unlike the
-/// bootstrap's, it does not vanish for 0 and for `of`.
+/// bootstrap's, it has a width even if the share is 0 or 1.
 pub(super) fn share_95(count: usize, of: usize) -> [f64; 2] {
     if of == 0 {
         return [0.0, 1.0];
@@ -90,7 +90,7 @@ mod tests {
 
     #[test]
     fn the_interval_of_a_share_is_wilsons() {
-        // The quadratic that defines it: (share - p)^2 = z^2 p (1 - p) / n at both ends.
+        // The interval is defined by this quadratic at both ends: (share - p)^2 = z^2 p (1 - p) / n.
         for (count, of) in [(0, 100), (1, 100), (50, 100), (97, 100), (100, 100), (3, 7)] {
             let share = count as f64 / of as f64;
             for p in share_95(count, of) {
@@ -101,7 +101,7 @@ mod tests {
         assert!(share_95(100, 100)[0] < 0.97 && share_95(0, 100)[1] > 0.03);
     }
 
-    // The interval of a median holds it and narrows with more values.
+    // The interval of a median contains it and narrows with more values.
     #[test]
     fn interval_of_a_median_holds_it_and_narrows() {
         let of = |count: u32| Spread::of((0..count).map(|n| f64::from(n * 7919 % count) / f64::from(count))).unwrap();
@@ -112,7 +112,7 @@ mod tests {
         }
         let width = |spread: &Spread| spread.median_95[1] - spread.median_95[0];
         assert!(width(&many) < width(&few) / 5.0);
-        // Of the median of n values spread evenly, 1.96 / sqrt(4 n) to either side.
+        // The interval of the median of n evenly spread values reaches 1.96 / sqrt(4 n) to either side.
         assert!((width(&many) - 2.0 * 1.96 / 20_000_f64.sqrt()).abs() < 0.006, "{}", width(&many));
     }
 }

@@ -1,12 +1,12 @@
 //! Alhazen's problem: the point of a circle at which sound from one point is reflected to another, with equal angles.
-//! For two points outside the circle there is exactly one, unless the circle lies between them.
+//! For two points outside the circle there is exactly one such point, unless the circle lies between them.
 
 use super::plane::{Point, Vector, cross};
 
 /// A specular reflection at the outside of a circle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Specular {
-    /// Point at which the circle is met.
+    /// Point of the circle.
     pub point: Point,
     /// Angle of incidence and of reflection, in radians from the normal, 0 to pi/2.
     pub incidence_rad: f64,
@@ -16,7 +16,7 @@ pub struct Specular {
     pub after_m: f64,
 }
 
-/// Finds the specular point to the last digits; `None` if a point is inside the circle or the circle lies in between.
+/// Finds the specular point to the last digits; `None` if a point is inside the circle or the circle lies between them.
 ///
 /// As the point moves from the source's direction towards the receiver's, the angle of incidence seen from the source
 /// grows and the one seen from the receiver falls, so their difference has one root. Newton's method finds it from
@@ -32,7 +32,7 @@ pub fn alhazen(source: Point, receiver: Point, centre: Point, radius_m: f64) -> 
     specular(source, receiver, centre, balance(source, receiver, (centre, radius_m))?)
 }
 
-/// The reflection at the point of a circle with this normal; `None` if the circle lies in between.
+/// Returns the reflection at the point of a circle with this normal; `None` if the circle lies in between.
 fn specular(source: Point, receiver: Point, centre: Point, normal: Normal) -> Option<Specular> {
     let point = centre + normal.unit * normal.radius_m;
     let (back, on) = (source - point, receiver - point);
@@ -46,29 +46,29 @@ fn specular(source: Point, receiver: Point, centre: Point, normal: Normal) -> Op
     })
 }
 
-/// The direction from a circle's centre to a point of it, of length 1.
+/// The direction of length 1 from a circle's centre to a point on it, and the circle's radius.
 #[derive(Clone, Copy)]
 struct Normal {
     unit: Vector,
     radius_m: f64,
 }
 
-/// The point of the circle with equal angles, visible or not; `None` unless both points are outside the circle.
+/// Returns the point of the circle with equal angles, visible or not; `None` unless both points are outside the circle.
 fn balance(source: Point, receiver: Point, circle: (Point, f64)) -> Option<Normal> {
     let (centre, radius_m) = circle;
     let (to_source, to_receiver) = (source - centre, receiver - centre);
     let (far_s, far_r) = (to_source.norm(), to_receiver.norm());
-    // Written so that a NaN gives none.
+    // The comparison is written so that a NaN gives none.
     if !(far_s > radius_m && far_r > radius_m && radius_m > 0.0) {
         return None;
     }
-    // A frame in which the source lies ahead and the receiver to the left.
+    // Turn the frame so that the source lies ahead and the receiver to the left.
     let ahead = to_source / far_s;
     let left = if cross(ahead, to_receiver) < 0.0 { -perpendicular(ahead) } else { perpendicular(ahead) };
     let receiver = Vector::new(ahead.dot(&to_receiver), left.dot(&to_receiver).max(0.0));
     let problem = Problem { source: far_s, receiver, far_r, radius: radius_m };
     let found = problem.solve();
-    // Rounding of the rotations is not left in it.
+    // Normalising removes the rounding of the rotations.
     Some(Normal { unit: (ahead * found.x + left * found.y).normalize(), radius_m })
 }
 
@@ -97,7 +97,7 @@ impl Problem {
             let across_s = self.source * normal.y;
             let along_r = self.receiver.dot(&normal) - self.radius;
             let across_r = cross(normal, self.receiver);
-            // Sine and cosine of what the angle seen from the source exceeds the other by, times the same.
+            // Sine and cosine of the excess of the angle seen from the source over the other, times the same factor.
             let (sin, cos) = (across_s * along_r - along_s * across_r, along_s * along_r + across_s * across_r);
             if sin > 0.0 {
                 high = normal;
@@ -134,7 +134,7 @@ impl Problem {
     }
 }
 
-/// A direction turned by a small angle, to its third power, with its length kept.
+/// Turns a direction by a small angle, to the angle's third power, without changing its length.
 fn rotated(direction: Vector, angle: f64) -> Vector {
     let half = 0.5 * angle;
     let scale = 1.0 / (1.0 + half * half);
@@ -142,10 +142,10 @@ fn rotated(direction: Vector, angle: f64) -> Vector {
     Vector::new(cos * direction.x - sin * direction.y, sin * direction.x + cos * direction.y)
 }
 
-/// Source, one circle, another circle, receiver: the two specular points of the path that bounces once at each.
+/// Finds the two specular points of the path from source over one circle and then another to receiver.
 ///
-/// Newton's method moves both points at once. If it does not converge, as between circles that nearly touch, the
-/// circles are solved alternately with the other point fixed: while all legs are visible, the length is strictly convex
+/// Newton's method moves both points at once. If it does not converge, for example between circles that nearly touch,
+/// each circle is solved in turn with the other point fixed: while all legs are visible, the length is strictly convex
 /// in both points, and each solution is its minimum in one of them.
 pub fn alhazen_twice(
     source: Point,
@@ -156,7 +156,7 @@ pub fn alhazen_twice(
     let aside = first.0 - second.0;
     let apart = aside.norm();
     let outside = |at: Point, circle: (Point, f64)| (at - circle.0).norm() > circle.1 && circle.1 > 0.0;
-    // Written so that a NaN gives none.
+    // The comparison is written so that a NaN gives none.
     if !(apart > first.1 + second.1 && outside(source, first) && outside(receiver, second)) {
         return None;
     }
@@ -169,22 +169,22 @@ pub fn alhazen_twice(
     };
     let circles = [first, second];
     let found = both_at_once(source, receiver, circles, starts).and_then(seen);
-    // Angles balance at hidden points too, where each of these may end.
+    // Angles balance at hidden points too, and each of these methods may end there.
     found.or_else(|| one_after_the_other(source, receiver, circles, facing[1], apart).and_then(seen)).or_else(|| {
         let [two, one] = one_after_the_other(receiver, source, [second, first], facing[0], apart)?;
         seen([one, two])
     })
 }
 
-/// The first normal to try for two points as seen from a circle's centre: between them, nearer to the one that is
-/// nearer to the circle. It is exact in the limits of a flat mirror and of a circle that is small compared with both
-/// distances.
+/// Returns the first normal to try for two points, given relative to a circle's centre: a direction between them,
+/// closer to the point that is nearer to the circle. It is exact in the limits of a flat mirror and of a circle that is
+/// small compared with both distances.
 fn start(to_here: Vector, to_there: Vector, radius_m: f64) -> Vector {
     let (far_here, far_there) = (to_here.norm(), to_there.norm());
     let [near_here, near_there] = [far_here, far_there].map(|far| 1.0 - radius_m / far);
     let between = to_here * (near_there / far_here) + to_there * (near_here / far_there);
     let length = between.norm();
-    // Straight behind each other with the circle in between, they leave no direction between.
+    // If the circle lies exactly between the points, there is no direction between them.
     if length > LAST * (near_here + near_there) { between / length } else { perpendicular(to_here / far_here) }
 }
 
@@ -231,14 +231,14 @@ impl Balance {
         Self { along: [normal.dot(&back), normal.dot(&on)], across: [cross(normal, back), cross(normal, on)] }
     }
 
-    /// The angle of one leg less that of the other, which is 0 in balance; `None` if it is not small.
+    /// The angle of one leg minus that of the other, 0 in balance; `None` if it is not small.
     fn excess(&self) -> Option<f64> {
         let sin = self.across[0] * self.along[1] + self.along[0] * self.across[1];
         let cos = self.along[0] * self.along[1] - self.across[0] * self.across[1];
         (cos > 0.0).then(|| arc_tangent(sin / cos))
     }
 
-    /// Derivative of that angle by the normal's.
+    /// Derivative of [`excess`](Self::excess) by the angle of the normal.
     fn slope(&self, back: Vector, on: Vector, radius_m: f64) -> f64 {
         -2.0 - radius_m * (self.along[0] / back.norm_squared() + self.along[1] / on.norm_squared())
     }
@@ -259,7 +259,7 @@ fn one_after_the_other(
 ) -> Option<[Normal; 2]> {
     let mut last_step = f64::INFINITY;
     for _ in 0..200 {
-        // On the way a point may be hidden; only the answer must be seen.
+        // A point may be hidden in an intermediate step; only the answer must be visible.
         let one = balance(source, on_second, first)?;
         let two = balance(first.0 + one.unit * first.1, receiver, second)?;
         let next = second.0 + two.unit * second.1;
@@ -287,7 +287,7 @@ mod tests {
         assert_eq!(alhazen(Point::new(f64::NAN, 0.0), Point::new(2.0, 2.0), circle, 0.5), None);
     }
 
-    // Solved from the one end the points of these circles, 9 mm apart, are hidden ones.
+    // Solved from one end, the points of these circles, 9 mm apart, are hidden.
     #[test]
     fn a_path_over_two_poles_goes_both_ways() {
         let (here, there) = (Point::new(-0.3119098673, 0.5597605183), Point::new(1.0186739892, 1.2544367654));
@@ -298,7 +298,7 @@ mod tests {
         assert!((one.point - back_one.point).norm() < 1e-12 && (two.point - back_two.point).norm() < 1e-12);
     }
 
-    // Where circles nearly touch, or a point lies close to one, Newton's method and one circle after the other agree.
+    // Newton's method agrees with one circle after the other, even if circles nearly touch or a point is close to one.
     #[test]
     fn both_ways_to_two_poles_agree() {
         let mut random = crate::world::Random::new(1);
@@ -350,13 +350,13 @@ mod tests {
         normal(0.5 * (low + high))
     }
 
-    /// A point that is this far outside a circle.
+    /// Draws a point at this distance outside a circle.
     fn outside(random: &mut crate::world::Random, centre: Point, radius_m: f64, gap_m: f64) -> Point {
         let (sin, cos) = libm::sincos(random.between(-4.0, 4.0));
         centre + Vector::new(cos, sin) * (radius_m + gap_m)
     }
 
-    // From wires to walls, from a micrometre off to a hundred metres, and with both points in nearly one direction.
+    // Radii are those of wires to walls, distances 1 um to 100 m, and some points lie in nearly one direction.
     #[test]
     fn specular_point_is_the_bisected_one() {
         let mut random = crate::world::Random::new(2);
@@ -377,7 +377,7 @@ mod tests {
             let expected = bisected(source, receiver, centre, radius_m);
             let at = centre + expected * radius_m;
             let lit = |end: Point| expected.dot(&(end - at).normalize());
-            // On the limit of the shadow rounding decides.
+            // Rounding decides on the limit of the shadow.
             if lit(source).abs() < 1e-5 || lit(receiver).abs() < 1e-5 {
                 continue;
             }
@@ -390,10 +390,10 @@ mod tests {
         assert!(seen > 10_000 && worst < 1e-9, "{seen} {worst:e}");
     }
 
-    /// The path over two circles by trying all points of the second, with the first solved by bisection: its length.
+    /// Finds the path's length by trying all points of the second circle, with the first solved by bisection.
     fn tried(source: Point, receiver: Point, circles: [(Point, f64); 2]) -> Option<f64> {
         let [first, second] = circles;
-        // How far the angles at the second point are from balance, if all legs are in sight, and the length.
+        // Deviation of the angles at the second point from balance, if all legs are visible, and the length.
         let try_at = |turn: f64| {
             let two = Vector::new(libm::cos(turn), libm::sin(turn));
             let on_second = second.0 + two * second.1;

@@ -26,13 +26,13 @@ impl Mirror {
         (point - self.on).dot(&self.normal)
     }
 
-    /// The mirrored point, given its [`distance`](Self::distance).
+    /// Returns the mirrored point, given its [`distance`](Self::distance).
     #[inline(always)]
     pub(crate) fn image(&self, point: Point, distance: f64) -> Point {
         point - self.normal * (2.0 * distance)
     }
 
-    /// The mirrored direction.
+    /// Returns the mirrored direction.
     #[inline(always)]
     pub(crate) fn turned(&self, direction: Vector) -> Vector {
         direction - self.normal * (2.0 * direction.dot(&self.normal))

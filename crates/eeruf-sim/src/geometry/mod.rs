@@ -1,5 +1,5 @@
-//! The plane, exactly: points and directions, mirrors, and reflection at circles. It knows nothing of sound or scenes,
-//! and uses no other module.
+//! Exact geometry of the plane: points and directions, mirrors, and reflection at circles. It knows nothing of sound or
+//! scenes, and uses no other module.
 
 mod alhazen;
 mod mirror;

@@ -1,5 +1,5 @@
-//! Points and the few operations on them that all else needs. The types are nalgebra's, with the cross product as an
-//! orientation test, and angles.
+//! Points and the few operations on them that other modules need. The types are nalgebra's; the cross product is an
+//! orientation test.
 
 use nalgebra::{Point2, Vector2};
 
@@ -10,17 +10,17 @@ pub type Vector = Vector2<f64>;
 /// Position and heading of a robot or a transducer.
 pub type Pose = nalgebra::Isometry2<f64>;
 
-/// The pose in a file's form.
+/// Converts a file's pose.
 pub fn pose_of(pose: &eeruf_files::Pose) -> Pose {
     Pose::new(Vector::new(pose.x_m, pose.y_m), pose.heading_rad)
 }
 
-/// Distance below which two points are one: joined walls, doubles of one path, a source on top of its receiver. A
-/// choice: above rounding in a room, below any real length.
+/// Distance in metres below which two points count as one, for example joined walls, duplicates of a path, or a source
+/// on top of its receiver. A choice: above rounding errors in a room, below any real length.
 pub const TOUCH_M: f64 = 1e-9;
 
-/// An angle below this counts as none when a receiver is compared with a beam's limit. Rounding stays under 1e-15 per
-/// bounce, so the figure separates "exactly on the limit" from every real miss.
+/// Angle below which a direction lies on a beam's limit. Rounding stays under 1e-15 per bounce, so the figure separates
+/// directions on the limit from real misses.
 pub(crate) const SAME_DIRECTION: f64 = 1e-12;
 
 /// Twice the signed area spanned by two vectors: positive when `b` points to the left of `a`.

@@ -6,16 +6,16 @@ pub(super) type Corner = [i64; 2];
 /// Headings, counter-clockwise from along x.
 const STEPS: [Corner; 4] = [[1, 0], [0, 1], [-1, 0], [0, -1]];
 
-/// The outlines of the occupied cells, each a closed line through the corners at which it turns, with the free space on
-/// its left. Occupied cells that touch at a corner belong together, so that no sound slips through a slanted wall.
+/// Returns the outlines of the occupied cells: closed lines through the corners at which they turn, with free space on
+/// the left. Occupied cells that touch at a corner belong together, so that no sound slips through a slanted wall.
 ///
-/// `occupied` is asked for cells inside `width` times `height` alone; nothing is occupied outside.
+/// `occupied` is called only for cells inside `width` times `height`; nothing is occupied outside.
 pub(super) fn contours(width: usize, height: usize, occupied: impl Fn(usize, usize) -> bool) -> Vec<Vec<Corner>> {
     let at = |x: i64, y: i64| {
         let inside = (0..width as i64).contains(&x) && (0..height as i64).contains(&y);
         inside && occupied(x as usize, y as usize)
     };
-    // For each corner, which directions lead on from it: a bit for each heading.
+    // Directions that lead on from each corner: a bit for each heading.
     let (columns, rows) = (width + 1, height + 1);
     let mut directions = vec![0_u8; columns * rows];
     for y in 0..rows as i64 {
@@ -36,7 +36,7 @@ pub(super) fn contours(width: usize, height: usize, occupied: impl Fn(usize, usi
     found
 }
 
-/// One outline, whose directions are taken from the map.
+/// Follows one outline, and removes its directions from the map.
 fn trace(directions: &mut [u8], columns: usize, start: usize) -> Vec<Corner> {
     let mut corners = Vec::new();
     let mut place = start;
@@ -46,10 +46,10 @@ fn trace(directions: &mut [u8], columns: usize, start: usize) -> Vec<Corner> {
         directions[place] &= !(1 << heading);
         let [dx, dy] = STEPS[heading];
         place = (place as i64 + dy * columns as i64 + dx) as usize;
-        // Left, straight on, right: where two occupied cells touch at a corner, left keeps to the same free cell.
+        // Try left, straight on, right: if two occupied cells touch at a corner, left stays at the same free cell.
         let next = [heading + 1, heading, heading + 3].map(|next| next % 4);
         let taken = next.into_iter().find(|&next| directions[place] & (1 << next) != 0);
-        // No way leads on where the outline closes.
+        // If no direction is left, the outline closes here.
         let next = taken.unwrap_or(first);
         if next != heading {
             corners.push([(place % columns) as i64, (place / columns) as i64]);
@@ -71,7 +71,7 @@ mod tests {
         contours(rows[0].len(), rows.len(), |x, y| rows[rows.len() - 1 - y].as_bytes()[x] == b'#')
     }
 
-    /// Twice the area on the left.
+    /// Returns twice the area on the left.
     fn area(corners: &[Corner]) -> i64 {
         let pairs = corners.iter().zip(corners.iter().cycle().skip(1));
         pairs.map(|(a, b)| a[0] * b[1] - a[1] * b[0]).sum()

@@ -9,11 +9,11 @@ use super::contours::contours;
 use super::{pgm, simplify, yaml};
 use crate::scene::Wall;
 
-/// Lower limit of the probability that `map_saver`'s grey for unknown cells means; newer versions write a `free_thresh`
+/// Probability that `map_saver`'s grey of unknown cells stands for, rounded down; newer versions write a `free_thresh`
 /// above it.
 const UNKNOWN: f64 = 0.196;
 
-/// Occupied and free cells of a square grid, and where the grid lies.
+/// Occupied and free cells of a square grid, and the pose of the grid.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OccupancyGrid {
     width: usize,
@@ -28,15 +28,15 @@ pub struct OccupancyGrid {
 }
 
 impl OccupancyGrid {
-    /// Reads a map as the ROS `map_server` saves it: a YAML file that names a picture beside it. A cell is occupied if
-    /// its probability is above `occupied_thresh`, free if it is below `free_thresh`, and otherwise neither.
+    /// Reads a map of the ROS `map_server`: a YAML file that names a picture beside it. A cell is occupied if its
+    /// probability is above `occupied_thresh`, free if it is below `free_thresh`, and otherwise neither.
     ///
     /// The keys are `image` (a PGM), `resolution` (metres per pixel), `origin` (x, y in metres and yaw in radians of
-    /// the lower left corner), and if need be `negate`, `occupied_thresh`, `free_thresh` and `mode` (`trinary` or
+    /// the lower left corner), and optionally `negate`, `occupied_thresh`, `free_thresh` and `mode` (`trinary` or
     /// `scale`).
     ///
     /// # Errors
-    /// The first thing found wrong, with the file that it is in.
+    /// The first error found, with the file that contains it.
     pub fn read(file: &Path) -> Result<Self, FileError> {
         let text = fs::read_to_string(file).map_err(|error| FileError::reading(file, &error))?;
         let head = yaml::read(&text).map_err(|message| FileError::new(file, message))?;
@@ -53,7 +53,7 @@ impl OccupancyGrid {
         Ok(Self { width, height, occupied, free, cell_m: head.resolution_m, origin: head.origin })
     }
 
-    /// Columns and rows.
+    /// Number of columns and rows.
     pub fn size(&self) -> [usize; 2] {
         [self.width, self.height]
     }
@@ -77,7 +77,7 @@ impl OccupancyGrid {
 
     /// Returns true if all cells within this distance of a point, in metres, are known to be free.
     ///
-    /// Nothing outside the grid is.
+    /// Cells outside the grid are not known to be free.
     pub fn is_free_around(&self, [x, y]: [f64; 2], radius_m: f64) -> bool {
         let [left, low, yaw] = self.origin;
         let (sin, cos) = (libm::sin(yaw), libm::cos(yaw));
@@ -102,7 +102,7 @@ impl OccupancyGrid {
         self.origin[2]
     }
 
-    /// The place of a point of the grid, counted in cells from its corner, in metres.
+    /// Converts a point counted in cells from the grid's corner to a position in metres.
     fn place(&self, cells: [f64; 2]) -> [f64; 2] {
         let [x, y, yaw] = self.origin;
         let (sin, cos) = (libm::sin(yaw), libm::cos(yaw));
@@ -111,16 +111,16 @@ impl OccupancyGrid {
     }
 
     /// The recommended tolerance in metres: one and a half cells. A straight wall becomes a stair whose corners lie in
-    /// a strip at most `sqrt(2)` cells wide, so this makes it straight again.
+    /// a strip at most `sqrt(2)` cells wide, so this tolerance makes it straight again.
     pub fn default_tolerance_m(&self) -> f64 {
         1.5 * self.cell_m
     }
 
-    /// The outlines of what is occupied as walls, seen from outside. No wall is farther than the tolerance, in metres,
-    /// from the edges of the occupied cells, no edge farther from the walls, and no two walls cross. With no tolerance
-    /// (none, or less) a slanted wall is a stair of cells; see [`default_tolerance_m`](Self::default_tolerance_m).
+    /// Returns the outlines of occupied cells as walls, seen from outside. Walls and edges of the cells are within the
+    /// tolerance, in metres, of each other, and no two walls cross. With a tolerance of 0 or less a slanted wall is a
+    /// stair of cells; see [`default_tolerance_m`](Self::default_tolerance_m).
     ///
-    /// Cells that touch at a corner belong together, so that nothing slips between them.
+    /// Cells that touch at a corner belong together, so that no sound slips between them.
     pub fn walls(&self, tolerance_m: f64) -> Vec<Wall> {
         let tolerance = if tolerance_m > 0.0 { tolerance_m / self.cell_m } else { 0.0 };
         let outlines = contours(self.width, self.height, |column, row| self.is_occupied(column, row));
@@ -140,7 +140,7 @@ mod tests {
     use crate::geometry::Point;
     use crate::scene::{Air, Scene};
 
-    /// A map in a folder of its own.
+    /// Writes a map into a folder of its own and reads it.
     fn map(name: &str, yaml: &str, pgm: &[u8]) -> Result<OccupancyGrid, FileError> {
         let folder = std::env::temp_dir().join(format!("eeruf-map-{}-{name}", std::process::id()));
         fs::create_dir_all(&folder).unwrap();
@@ -153,10 +153,10 @@ mod tests {
 
     const YAML: &str = "image: map.pgm\nresolution: 0.5\norigin: [10, 20, 0]\n";
 
-    // A room in a picture is a room of four walls inside and four outside.
+    // A room in a picture has four walls on the inside and four on the outside.
     #[test]
     fn room_in_a_picture_has_four_walls_each_side() {
-        // Black all around, white within, a grey pixel of which nothing is known.
+        // The picture is black all around and white within, with a grey pixel that is unknown.
         let grid = map("room", YAML, b"P2 4 4 255 0 0 0 0 0 255 255 0 0 255 205 0 0 0 0 0").unwrap();
         assert_eq!((grid.size(), grid.cell_m()), ([4, 4], 0.5));
         assert!(grid.is_occupied(0, 0) && !grid.is_occupied(1, 1) && !grid.is_occupied(9, 9));

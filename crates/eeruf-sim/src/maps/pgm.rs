@@ -1,6 +1,6 @@
 //! Pictures in grey: PGM, plain (`P2`) or binary (`P5`), as netpbm defines it.
 
-/// The most pixels that are read: a choice, 400 MB of them.
+/// Largest number of pixels that are read: a choice, a file of 400 MB at one byte each.
 const MOST: usize = 400_000_000;
 
 /// A picture, its rows from the top.
@@ -34,7 +34,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Picture, String> {
     let mut pixels = Vec::new();
     if binary {
         let wide = 1 + usize::from(most > 255);
-        // One white space ends the head.
+        // A single white space ends the head.
         let data = bytes.get(words.at + 1..).unwrap_or_default();
         if data.len() < count * wide {
             return Err(format!("{} bytes of pixels; {width} x {height} need {}", data.len(), count * wide));
@@ -52,7 +52,7 @@ pub(super) fn read(bytes: &[u8]) -> Result<Picture, String> {
     Ok(Picture { width, height, pixels })
 }
 
-/// The numbers of the head and of a plain picture, apart by white space and comments.
+/// Numbers of the head and of a plain picture, separated by white space and comments.
 struct Words<'a> {
     bytes: &'a [u8],
     at: usize,

@@ -1,4 +1,4 @@
-//! Simplification of outlines by Douglas and Peucker; where lines would cross, corners are added again.
+//! Simplification of outlines by Douglas and Peucker; if lines would cross, corners are added again.
 //!
 //! D. Douglas and T. Peucker, "Algorithms for the reduction of the number of points required to represent a digitized
 //! line or its caricature", The Canadian Cartographer 10(2), 1973.
@@ -7,8 +7,8 @@ use std::collections::BTreeSet;
 
 use super::contours::Corner;
 
-/// Closed lines through some of the corners: every omitted corner is within `tolerance` of its line and every line
-/// within it of the outline, and two lines share at most an end. Lengths are in cells.
+/// Returns closed lines through some of the corners. Every omitted corner is within `tolerance` of its line, and every
+/// line within `tolerance` of the outline; two lines share at most an end. Lengths are in cells.
 pub(super) fn simplified(outlines: &[Vec<Corner>], tolerance: f64) -> Vec<Vec<Corner>> {
     let mut kept: Vec<Kept> = outlines.iter().map(|corners| Kept::new(corners, tolerance)).collect();
     loop {
@@ -25,7 +25,7 @@ pub(super) fn simplified(outlines: &[Vec<Corner>], tolerance: f64) -> Vec<Vec<Co
     }
 }
 
-/// An outline, and which of its corners are kept.
+/// An outline, and the corners of it that are kept.
 struct Kept<'a> {
     of: &'a [Corner],
     tolerance: f64,
@@ -36,21 +36,21 @@ struct Kept<'a> {
 #[derive(Clone, Copy)]
 struct Line {
     outline: usize,
-    /// The place in the outline of the corner at which the line begins.
+    /// Index in the outline of the corner at which the line begins.
     first: usize,
     ends: [Corner; 2],
 }
 
 impl<'a> Kept<'a> {
     fn new(of: &'a [Corner], tolerance: f64) -> Self {
-        // The first corner is the lowest; the one farthest from it is an end of any line as well.
+        // The first corner is the lowest; the corner farthest from it is also always an end of a line.
         let farthest = (0..of.len()).max_by_key(|&corner| square(of[corner], of[0])).unwrap_or(0);
         let mut kept = Self { of, tolerance, corners: BTreeSet::from([0, farthest]) };
         kept.refine_until_near(vec![0, farthest]);
         kept
     }
 
-    /// Keeps more corners of the lines that begin at these, until all omitted corners are near enough.
+    /// Keeps more corners of the lines that begin at `open`, until all omitted corners are near enough.
     fn refine_until_near(&mut self, mut open: Vec<usize>) {
         while let Some(first) = open.pop() {
             if let Some((corner, off)) = self.farthest(first)
@@ -62,7 +62,7 @@ impl<'a> Kept<'a> {
         }
     }
 
-    /// The place of the corner at which the line ends that begins here; after the last one it is the first's again.
+    /// Returns the index of the corner at which a line ends; the last line ends at the first corner.
     fn end(&self, first: usize) -> usize {
         self.corners.range(first + 1..).next().copied().unwrap_or(self.of.len())
     }
@@ -71,7 +71,7 @@ impl<'a> Kept<'a> {
         self.of[place % self.of.len()]
     }
 
-    /// The corner farthest from the line that omits it, and its distance; `None` if the line omits none.
+    /// Returns the corner farthest from the line that omits it, and its distance; `None` if the line omits none.
     fn farthest(&self, first: usize) -> Option<(usize, f64)> {
         let end = self.end(first);
         let (from, to) = (self.at(first), self.at(end));
@@ -79,7 +79,7 @@ impl<'a> Kept<'a> {
         passed.map(|corner| (corner, off(self.at(corner), from, to))).max_by(|(_, a), (_, b)| a.total_cmp(b))
     }
 
-    /// Adds one corner to the line that begins here, and more to the two new lines as needed; `false` if it omits none.
+    /// Adds a corner to the line that begins here, and more to its halves as needed; `false` if the line omits none.
     fn refine(&mut self, first: usize) -> bool {
         let Some((corner, _)) = self.farthest(first) else { return false };
         self.corners.insert(corner);
@@ -108,7 +108,7 @@ pub(super) fn off(corner: Corner, from: Corner, to: Corner) -> f64 {
     libm::hypot(x - share * dx, y - share * dy)
 }
 
-/// Lines that share more than an end with another line.
+/// Returns the lines that share more than an end with another line.
 fn crossing(lines: &[Line]) -> BTreeSet<usize> {
     let span = |line: &Line, axis: usize| {
         let [a, b] = line.ends;
@@ -143,7 +143,7 @@ fn meet([a, b]: [Corner; 2], [c, d]: [Corner; 2]) -> bool {
     };
     let [sa, sb, sc, sd] = [side(c, d, a), side(c, d, b), side(a, b, c), side(a, b, d)];
     if [sa, sb, sc, sd] == [0; 4] {
-        // On one line: whether an end of one lies within the other, or both are the same.
+        // Both lie on one line: they meet if an end of one lies within the other, or if both are the same.
         let within = |from: Corner, to: Corner, of: Corner| of != from && of != to && between(from, to, of);
         let same = (a == c && b == d) || (a == d && b == c);
         return same || within(a, b, c) || within(a, b, d) || within(c, d, a) || within(c, d, b);
@@ -151,7 +151,7 @@ fn meet([a, b]: [Corner; 2], [c, d]: [Corner; 2]) -> bool {
     if sa * sb < 0 && sc * sd < 0 {
         return true;
     }
-    // An end of one within the other.
+    // They also meet if an end of one lies within the other.
     let ends_in =
         |side: i64, from: Corner, to: Corner, of: Corner| side == 0 && of != from && of != to && between(from, to, of);
     ends_in(sa, c, d, a) || ends_in(sb, c, d, b) || ends_in(sc, a, b, c) || ends_in(sd, a, b, d)
@@ -184,7 +184,7 @@ mod tests {
     }
 
     proptest! {
-        // Every simplified wall lies within the tolerance of the map and none crosses another.
+        // Every simplified wall lies within the tolerance of the map, and none crosses another.
         #[test]
         fn simplified_walls_stay_within_tolerance(
             blobs in prop::collection::vec((0_usize..30, 0_usize..24, 1_usize..14, 1_usize..14), 1..12),
@@ -227,7 +227,7 @@ mod tests {
         assert!(stairs > 100 && straight <= 8, "{stairs} {straight}");
     }
 
-    // Lines that share an end do not meet and all others that touch do.
+    // Lines that share an end do not meet, all others that touch do.
     #[test]
     fn touching_lines_meet_unless_they_share_an_end() {
         let a = [[0, 0], [4, 4]];

@@ -13,7 +13,7 @@ pub(super) struct Head {
     pub(super) resolution_m: f64,
     /// Pose of the lower left corner of the picture: x and y in metres, yaw in radians.
     pub(super) origin: [f64; 3],
-    /// True if white is occupied, not black.
+    /// True if white is occupied instead of black.
     pub(super) negate: bool,
     /// Probability above which a cell is occupied.
     pub(super) occupied_thresh: f64,
@@ -60,7 +60,7 @@ pub(super) fn read(text: &str) -> Result<Head, String> {
     Ok(Head { image: image.to_owned(), resolution_m, origin: [x, y, yaw], negate, occupied_thresh, free_thresh })
 }
 
-/// A number, or none.
+/// Returns a number; NaN for anything else.
 fn number(value: &Yaml<'_>) -> f64 {
     match value {
         Yaml::Value(Scalar::Integer(whole)) => *whole as f64,

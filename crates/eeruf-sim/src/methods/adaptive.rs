@@ -23,7 +23,7 @@ impl<const E: usize> RingRunner for AdaptiveRing<E> {
     fn poll(&mut self, now: Instant, expected_change_us: &dyn Fn(u8) -> i32) -> Option<RingEvent> {
         let event = self.ring.poll_expecting(now, expected_change_us)?;
         if let RingEvent::PeriodEnded(stats) = event {
-            // Every rung was verified for the ring's own t_delta and window, so this cannot fail.
+            // Every rung was verified for the ring's own `t_delta` and window, so this cannot fail.
             let rungs = Arc::clone(self.adaptation.rungs());
             _ = self.adaptation.adapt_to(&stats, |rung| {
                 self.ring.change_to(Arc::new(*rungs[rung].schedule()), *rungs[rung].own_limits())
@@ -49,10 +49,10 @@ impl<const E: usize> RingRunner for AdaptiveRing<E> {
     }
 }
 
-/// Rungs of the adaptive method's ladder, as multiples of the first schedule.
+/// Rungs of the adaptive method's ladder, as multiples of the first schedule's period.
 const RUNGS: [(u32, u32); 4] = [(5, 6), (1, 1), (4, 3), (5, 3)];
 
-/// The rungs of a robot's ladder, from the schedule that it starts from.
+/// Plans the rungs of a robot's ladder, given its first schedule.
 pub(super) fn plan(robot: &Robot, base: AnySchedule) -> Result<FiringPlan, StartError> {
     let scaled = RUNGS.iter().filter_map(|&(num, den)| base.scaled(num, den).ok());
     let mut ladder: Vec<_> = scaled.filter_map(|rung| robot.verified(&rung).ok()).collect();
@@ -62,11 +62,11 @@ pub(super) fn plan(robot: &Robot, base: AnySchedule) -> Result<FiringPlan, Start
     Ok(FiringPlan { ladder, ..FiringPlan::new(base) })
 }
 
-/// A ring on its ladder, with up to `E` echoes of a firing.
+/// Makes a ring on its ladder, with up to `E` echoes of a firing.
 pub(super) fn ring<const E: usize>(start: &RingStart<'_>) -> Started {
     let &RingStart { robot, plan, ref judging, now, .. } = start;
     let adaptation = OnLadder::new(Arc::<[Rung]>::from(&plan.ladder[..])).map_err(StartError::Ladder)?;
-    // A ladder has a rung.
+    // A ladder has at least one rung.
     let lowest = &adaptation.rungs()[0];
     let plan = SimulatedTable::holding(Arc::new(*lowest.schedule()), *lowest.own_limits(), now);
     Ok(Box::new(AdaptiveRing::<E> { ring: ring_runner::ring(plan, robot, judging, now)?, adaptation }))

@@ -1,4 +1,4 @@
-//! The best schedule for a robot's ring: the shortest period that guarantees as much as the robot's own schedule.
+//! The best schedule for a robot's ring: the shortest period with the same guarantees as the robot's own schedule.
 
 use eeruf_core::search::{Progress, SearchError};
 use eeruf_core::{Layout, Micros, Requirements};
@@ -8,13 +8,12 @@ use std::ops::ControlFlow;
 use super::schedules::table_i_d_for;
 use crate::world::Robot;
 
-/// The grid on which firing times are sought: a choice; finer ticks seldom gain (`docs/explanation/theory.md`, section
-/// 5.6).
+/// Grid of firing times in a search: a choice; finer ticks seldom gain (`docs/explanation/theory.md`, section 5.6).
 pub const TICK: Micros = Micros::new(100);
 
-/// Requirements that any schedule of a robot's ring must keep: the robot's `t_delta` and window, the interval that its
-/// schedule (or the paper's table at its period) keeps between neighbours, and that a sensor's own stale echoes are
-/// rejected.
+/// Returns the requirements that any schedule of a robot's ring must keep: the robot's `t_delta` and window, the
+/// interval between neighbours in its own schedule (or in the paper's table at its period), and rejection of a sensor's
+/// own stale echoes.
 pub fn requirements_of(robot: &Robot) -> Requirements<'static> {
     let own = robot.schedule.or_else(|| table_i_d_for(robot.sensors.len(), robot.period, robot.neighbours).ok());
     let layout = layout_of(robot);
@@ -28,8 +27,8 @@ pub fn requirements_of(robot: &Robot) -> Requirements<'static> {
     }
 }
 
-/// Searches `budget` nodes for the schedule with the shortest period that meets [`requirements_of`] a robot.
-/// `keep_going` is called sometimes, and may end the search.
+/// Searches `budget` nodes for the schedule with the shortest period that meets the [requirements](requirements_of) of
+/// a robot. `keep_going` is called sometimes, and may end the search.
 ///
 /// # Errors
 /// [`SearchError`] if the ring is too large to search.
@@ -41,7 +40,7 @@ pub fn shortest_schedule_for(
     problem_of(robot).shortest(budget, &mut control(keep_going))
 }
 
-/// The schedule of [`shortest_schedule_for`]; if its period is proven, the preferred one of that period.
+/// Returns the [shortest schedule](shortest_schedule_for); if its period is proven, the preferred one of that period.
 ///
 /// # Errors
 /// [`SearchError`] if the ring is too large to search.
@@ -73,7 +72,7 @@ fn control(mut keep_going: impl FnMut(&Progress) -> bool) -> impl FnMut(&Progres
     move |progress| if keep_going(progress) { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
 }
 
-/// A ring if the sensors go all the way round, otherwise a line.
+/// Returns a ring if the sensors go all the way round, otherwise a line.
 fn layout_of(robot: &Robot) -> Layout<'static> {
     let turn = |from: usize, to: usize| match (robot.sensors.get(from), robot.sensors.get(to)) {
         (Some(from), Some(to)) => (from.rotation.inverse() * to.rotation).angle().abs(),

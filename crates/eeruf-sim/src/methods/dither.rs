@@ -10,7 +10,7 @@ use crate::world::Random;
 pub(super) const WAY: Way =
     Way { ring: dithered, refire: |robot, _, _| robot.window, ..Way::by_table(schedules::conventional) };
 
-/// The schedule's lags plus random waits.
+/// Starts a ring that fires at the schedule's lags plus random waits.
 fn dithered(start: &RingStart<'_>) -> Started {
     let schedule = &start.plan.schedule;
     let (lags, period) = (schedule.t_lag().to_vec(), schedule.period());
@@ -24,7 +24,7 @@ fn dithered(start: &RingStart<'_>) -> Started {
 struct Dither {
     lags: Vec<Micros>,
     period: Micros,
-    /// Largest wait, with which each firing stays within the period.
+    /// Largest wait that keeps each firing within the period.
     widest: Micros,
     random: Random,
 }

@@ -1,5 +1,5 @@
-//! [`FiringMethod`]: firings of a ring, planned period by period by a method or by the caller's code; and the plan
-//! through which core's ring fires them.
+//! [`FiringMethod`]: firings of a ring, planned period by period by a method or by the caller's code; and the plan by
+//! which core's ring fires them.
 
 use core::fmt;
 
@@ -31,8 +31,8 @@ pub trait FiringMethod: Send {
     /// An error ends the simulation, with [`SimulationError::Own`](crate::SimulationError::Own).
     fn plan(&mut self, period: u32) -> Result<FiringPeriod, OwnError>;
 
-    /// Returns a copy that continues in the same way; `None`, the default, if it cannot be copied. A simulation can be
-    /// [copied](crate::Simulation::copy) if all of its robots' firing methods can.
+    /// Returns a copy that continues in the same way; `None`, the default, if the method cannot be copied. A simulation
+    /// can be [copied](crate::Simulation::copy) if all of its robots' firing methods can.
     fn copy(&self) -> Option<Box<dyn FiringMethod>> {
         None
     }
@@ -73,8 +73,8 @@ pub struct FiringPeriod {
     pub firings: Vec<(Micros, u8)>,
 }
 
-/// Reason why a [`FiringMethod`](crate::FiringMethod) or a [`Filter`](crate::Filter) of the caller's ends a simulation:
-/// a sentence.
+/// Reason why the caller's own [`FiringMethod`](crate::FiringMethod) or [`Filter`](crate::Filter) ends a simulation: a
+/// sentence.
 ///
 /// ```
 /// use eeruf_sim::OwnError;
@@ -143,7 +143,7 @@ impl fmt::Display for Unfit {
     }
 }
 
-/// A plan of core that fires the periods of a [`FiringMethod`].
+/// A core plan that fires the periods of a [`FiringMethod`].
 #[derive(Clone)]
 pub(crate) struct PeriodFiring {
     planner: Planner,
@@ -161,7 +161,7 @@ pub(crate) struct PeriodFiring {
     /// The index of the next firing.
     next: usize,
     start: Instant,
-    /// Time since each sensor fired, when the present period begins as planned; a long time for those that have not.
+    /// Time since each sensor's last firing at the planned start of the present period; `None` for sensors without one.
     before_us: Vec<Option<u64>>,
     enabled: [bool; MAX_SENSORS],
     paused: bool,
@@ -169,7 +169,7 @@ pub(crate) struct PeriodFiring {
 }
 
 impl PeriodFiring {
-    /// A plan for this many sensors, none of which fires again within `refire`. If the first period is invalid,
+    /// Makes a plan for this many sensors, none of which fires again within `refire`. If the first period is invalid,
     /// [`error`](Self::error) gives the reason.
     pub(crate) fn new(firing: Box<dyn FiringMethod>, sensors: usize, refire: Micros, now: Instant) -> Self {
         let mut firing = Self {
@@ -192,7 +192,7 @@ impl PeriodFiring {
         firing
     }
 
-    /// Returns the reason why the plan no longer fires, if it does not.
+    /// Returns the reason why the plan no longer fires, if it has stopped.
     pub(crate) fn error(&self) -> Option<&OwnError> {
         self.planner.0.as_ref().err()
     }
@@ -217,14 +217,14 @@ impl PeriodFiring {
             self.period = number.wrapping_add(1);
         }
         if self.planner.0.is_err() {
-            // Nothing fires any more; whoever drives the ring looks at the error now.
+            // Nothing fires any more; the caller of the ring now checks the error.
             self.due.clear();
             self.length = MAX_PERIOD;
         }
         self.skip_disabled();
     }
 
-    /// Starts a planned period, if it can be fired.
+    /// Starts a planned period, if it is valid.
     fn take(&mut self, period: FiringPeriod) -> Result<(), Unfit> {
         let FiringPeriod { length, phase, mut firings } = period;
         if length == Micros::ZERO || length > MAX_PERIOD {
@@ -242,7 +242,7 @@ impl PeriodFiring {
             let Some(before_us) = self.before_us.get_mut(usize::from(sensor)) else {
                 return Err(Unfit::Sensor { sensor, sensors });
             };
-            // A sensor that has fired in this very period did so before it began by a negative time.
+            // A sensor that has fired in this same period did so a negative time before its beginning.
             let at_us = u64::from(at.as_micros());
             let (refire, after_us) = (self.refire, before_us.map(|before_us| before_us.wrapping_add(at_us)));
             if let Some(after_us) = after_us.filter(|after_us| *after_us < u64::from(refire.as_micros())) {
@@ -318,7 +318,7 @@ impl Plan for PeriodFiring {
     }
 
     fn restart(&mut self, now: Instant) {
-        // A clock that has jumped says nothing about when the last firing was.
+        // After a jump of the clock the time of the last firing is unknown.
         let settled = self.last_fired.map(|fired| fired + self.refire);
         let soon = settled.filter(|settled| settled.has_reached(now) && settled.since(now) <= self.refire);
         self.before_us.fill(None);

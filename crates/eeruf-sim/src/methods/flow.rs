@@ -1,4 +1,4 @@
-//! A robot's ring that fires by flow: core's own.
+//! A robot's ring that fires by flow, as implemented in core.
 
 use eeruf_core::{
     MAX_SENSORS, Micros,
@@ -10,7 +10,7 @@ use super::ring_runner::{RingStart, Started, Way, config_of, trusting};
 use super::schedules;
 use crate::world::Robot;
 
-/// Settings of a flow ring that differ from its robot's.
+/// Settings of a flow ring that override those of its robot.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[non_exhaustive]
 pub struct FlowOptions {
@@ -31,10 +31,10 @@ pub struct FlowOptions {
 }
 
 impl FlowOptions {
-    /// The gaps of a robot's ring, with its own seed.
+    /// Returns the gaps of a robot's ring, with the given seed.
     fn turns(&self, robot: &Robot, seed: u32) -> TurnSettings {
         let &Robot { window, audible, blanking, .. } = robot;
-        // A sensor that fires while its last sound is heard would take old echoes for new ones.
+        // A sensor that fires while its last sound is still heard would take old echoes for new ones.
         let rest = self.rest.unwrap_or(robot.module_rest().max(window).max(audible));
         let mut settings = TurnSettings::for_module(seed, window, rest, blanking);
         let heard = if audible > Micros::ZERO { audible } else { settings.most };
@@ -48,7 +48,7 @@ impl FlowOptions {
 pub(super) const WAY: Way =
     Way { ring: flow, refire: |robot, _, _| robot.window, ..Way::by_table(schedules::conventional) };
 
-/// A flow ring, no larger than needed.
+/// Starts a flow ring that is no larger than needed.
 fn flow(start: &RingStart<'_>) -> Started {
     match (start.judging.echoes, start.robot.sensors.len()) {
         (..=1, ..=8) => ring::<8, 1>(start),
@@ -60,7 +60,7 @@ fn flow(start: &RingStart<'_>) -> Started {
 
 fn ring<const K: usize, const E: usize>(start: &RingStart<'_>) -> Started {
     let RingStart { robot, flow, mut random, now, .. } = *start;
-    // A seed of 0 would throw nothing.
+    // A seed of 0 would make no random numbers.
     let turns = flow.turns(robot, random.bits() as u32 | 1);
     let ring = FlowRing::<K, E>::flow(robot.sensors.len(), turns, start.judging.belief, config_of(robot), now)?;
     Ok(Box::new(trusting(ring)))

@@ -1,4 +1,4 @@
-//! The judges of simulated rings: core's own, and those of the robot's sketch.
+//! The judges of simulated rings: core's own, and the judges of a robot's sketch.
 
 use eeruf_core::{
     EchoFilter, Micros, ReadingKind, RingConfig, RingError,
@@ -16,7 +16,7 @@ pub(crate) const MAX_MEDIAN: usize = 15;
 pub(crate) enum JudgeKind {
     /// Every echo is accepted.
     EveryEcho,
-    /// Two of three votes: an echo is accepted if it agrees with one of the sensor's two readings before.
+    /// Two of three votes: an echo is accepted if it agrees with one of the sensor's two previous readings.
     TwoOfThree,
     /// The median of the last few readings.
     Median,
@@ -36,8 +36,8 @@ impl JudgeKind {
         matches!(self, Self::Unexplained | Self::Belief)
     }
 
-    /// The judge of a robot that may fire by another method than the one `asked` for. It is that method's, unless both
-    /// compare consecutive readings, or the caller's own filter replaces it.
+    /// Returns the judge of a robot that may fire by another method than the `asked` one. The asked method's judge is
+    /// used, unless both compare consecutive readings, or the caller's own filter replaces it.
     pub(crate) fn of_robot(self, asked: Self, robot: &Robot, has_filter: bool) -> Self {
         match asked {
             Self::AsSketched if robot.firing.consecutive == 1 && !has_filter => Self::EveryEcho,
@@ -84,7 +84,7 @@ impl<const K: usize, const E: usize> RunningJudge<K, E> {
     }
 }
 
-/// Calls the judge, whichever it is.
+/// Calls the judge of any variant.
 macro_rules! each {
     ($running:ident, $judge:ident => $answer:expr) => {
         match $running {

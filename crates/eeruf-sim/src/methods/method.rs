@@ -12,7 +12,7 @@ use super::judges::JudgeKind::{self, AsSketched};
 use super::ring_runner::{FiringPlan, RingStart, StartError, Started, Way};
 use crate::world::{AnySchedule, Robot};
 
-/// The most echoes that a sensor reports of one firing.
+/// Largest number of echoes that a sensor reports of one firing.
 pub(crate) const MAX_ECHOES: usize = 8;
 
 /// A firing method: its firing, its judge, the number of echoes that a sensor reports, and its adaptation.
@@ -29,8 +29,8 @@ pub(super) struct MethodRow {
     pub(super) adapts: bool,
 }
 
-/// Defaults of a row: the robot's own schedule, one echo, and acceptance if nothing foreign explains it and the one
-/// before.
+/// Defaults of a row: the robot's own schedule, one echo, and a judge that accepts consecutive readings if they agree
+/// and nothing foreign explains them.
 pub(super) const DEFAULT: MethodRow = MethodRow {
     name: "",
     about: "",
@@ -41,7 +41,7 @@ pub(super) const DEFAULT: MethodRow = MethodRow {
     adapts: false,
 };
 
-/// Makes the enum, its list and its rows from the table, and the modules of ways that have files of their own.
+/// Makes the enum, its list and its rows from the table, and declares the modules of ways in files of their own.
 macro_rules! methods {
     ($(
         $(#[doc = $about:literal])+
@@ -82,13 +82,13 @@ impl Method {
         self.row().name
     }
 
-    /// The first sentence of its description.
+    /// Returns the first sentence of the description.
     pub fn about(self) -> String {
         let text = self.row().about.trim();
-        // Not that of `Fig. 3`.
+        // A point as in `Fig. 3` does not end a sentence.
         let mut ends = text.match_indices(". ").filter(|(at, _)| text[at + 2..].starts_with(char::is_uppercase));
         let first = &text[..ends.next().map_or(text.len(), |(at, _)| at)];
-        // Links show what they name.
+        // Links are replaced by their texts.
         let mut shown = String::with_capacity(first.len());
         for part in first.split("](") {
             let rest = if shown.is_empty() { part } else { part.split_once(')').map_or("", |(_, rest)| rest) };
@@ -97,7 +97,7 @@ impl Method {
         shown.replace("[`", "").replace('`', "").trim_end_matches('.').to_owned()
     }
 
-    /// Returns true for the paper's method and its extensions: alternating waits, with consecutive readings compared.
+    /// Returns true for the paper's method and its extensions: alternating waits, and comparison of readings.
     pub const fn is_eeruf(self) -> bool {
         self.row().judge.asks()
     }
@@ -112,12 +112,12 @@ impl Method {
         Self::ALL.into_iter().filter(|method| !method.is_sketch() && !method.is_on_demand())
     }
 
-    /// Returns true if the method is simulated only when requested by name, since it combines two methods.
+    /// Returns true if the method is simulated only when requested by name, because it combines two others.
     pub const fn is_on_demand(self) -> bool {
         self.row().on_demand
     }
 
-    /// The judge of the method's readings.
+    /// Returns the judge of the method's readings.
     pub(crate) const fn judge(self) -> JudgeKind {
         self.row().judge
     }
@@ -127,22 +127,22 @@ impl Method {
         self.row().echoes
     }
 
-    /// Least time until a sensor may fire again, as long as its ring keeps this schedule.
+    /// Returns the least time until a sensor may fire again while its ring keeps this schedule.
     pub(crate) fn soonest_refire(self, robot: &Robot, schedule: &AnySchedule, sensor: usize) -> Micros {
         if self.row().adapts { robot.window } else { (self.row().firing.refire)(robot, schedule, sensor) }
     }
 
-    /// The schedule with which a robot's ring starts.
+    /// Returns the schedule with which a robot's ring starts.
     pub(crate) fn schedule(self, robot: &Robot, best: Option<&AnySchedule>) -> Result<AnySchedule, ScheduleError> {
         (self.row().firing.schedule)(robot, best)
     }
 
-    /// The plan of a robot's ring, from its first schedule.
+    /// Returns the plan of a robot's ring, given its first schedule.
     pub(crate) fn plan(self, robot: &Robot, schedule: AnySchedule) -> Result<FiringPlan, StartError> {
         if self.row().adapts { adaptive::plan(robot, schedule) } else { (self.row().firing.plan)(robot, schedule) }
     }
 
-    /// A robot's ring, ready to run.
+    /// Starts a robot's ring.
     pub(crate) fn start(self, start: &RingStart<'_>) -> Started {
         (self.row().firing.ring)(start)
     }

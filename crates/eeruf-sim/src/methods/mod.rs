@@ -1,9 +1,9 @@
-//! The firing methods that are compared: one table of them, the schedules that they fire by, and core's ring behind
-//! each. It uses `world` for the robots that fire.
+//! The firing methods that are compared: one table of them, their schedules, and core's ring behind each. It uses
+//! `world` for the robots that fire.
 //!
-//! To add a method, add a row to the table below. A new way of firing is a `Way` of `ring_runner` in a file of its
-//! own, which its row names: `Gap = "gap" in gap { firing: gap::WAY, }`. Help, Python's types, the page and the tests
-//! take the names from here.
+//! To add a method, add a row to the table below. A new way of firing is a `Way` of `ring_runner` in a file of its own,
+//! named in the row: `Gap = "gap" in gap { firing: gap::WAY, }`. Help, Python's types, the page and the tests take the
+//! names from here.
 
 mod adaptive;
 mod best_schedule;

@@ -1,5 +1,5 @@
-//! Core's own [`Ring`], with any plan, judge and number of echoes, behind one trait: the same code as on the target,
-//! under simulated time. It owns its schedule, so that it can be copied.
+//! Core's own [`Ring`], with any plan, judge and number of echoes, behind one trait: the code of the target under
+//! simulated time. It owns its schedule, so that it can be copied.
 
 use std::sync::Arc;
 
@@ -28,26 +28,26 @@ pub(crate) trait RingRunner: Send {
     fn next_deadline(&self) -> Instant;
     /// Reports a sensor's echo.
     fn echo(&mut self, sensor: u8, at: Instant);
-    /// Number of firings since the one whose echo a sensor's last reading reports.
+    /// Returns the number of firings since the one whose echo a sensor's last reading reports.
     fn stands_for(&self, sensor: u8) -> u8;
     /// Reports the robot's speed and rate of turn.
     fn moving(&mut self, _speed_mm_s: u32, _turn_mrad_s: u32, _now: Instant) {}
-    /// Changes to another schedule with as many sensors when the present period ends.
+    /// Changes to another schedule with as many sensors at the end of the present period.
     fn change_schedule(&mut self, _schedule: &AnySchedule) -> Result<(), ChangeError> {
         Err(ChangeError::Fixed)
     }
-    /// Returns the reason why the ring no longer fires, if it does not.
+    /// Returns the reason why the ring no longer fires, if it has stopped.
     fn error(&self) -> Option<&OwnError> {
         None
     }
-    /// A ring in the same state; `None` if its firing method cannot be copied.
+    /// Returns a ring in the same state; `None` if its firing method cannot be copied.
     fn copy(&self) -> Option<Box<dyn RingRunner>>;
 }
 
 /// Reason why a ring cannot change to another schedule.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum ChangeError {
-    /// The ring's firing method has no schedule that could change.
+    /// The ring's firing method has no schedule to change.
     Fixed,
     /// The ring cannot listen as requested.
     Ring(RingError),
@@ -62,7 +62,7 @@ pub(super) trait SimulatedPlan: Plan + Clone + Send + 'static {
     ) -> Result<(), ChangeError> {
         Err(ChangeError::Fixed)
     }
-    /// See [`RingRunner::error`].
+    /// Returns the reason why the plan no longer fires: see [`RingRunner::error`].
     fn error(&self) -> Option<&OwnError> {
         None
     }
@@ -109,7 +109,7 @@ where
     }
 
     fn echo(&mut self, sensor: u8, at: Instant) {
-        // A ring is as large as its robot's.
+        // The ring is as large as its robot's, so this cannot fail.
         _ = Ring::echo(self, sensor, at);
     }
 
@@ -134,7 +134,7 @@ where
     }
 }
 
-/// Firing by a table, for sensors that are alike or not.
+/// Firing by a table, for sensors with equal or different limits.
 pub(super) type SimulatedTable = TableFiring<Arc<AnySchedule>, MAX_SENSORS, 2, EachSensor<MAX_SENSORS>>;
 
 /// The plan of a robot's ring.
@@ -148,7 +148,7 @@ pub(crate) struct FiringPlan {
 }
 
 impl FiringPlan {
-    /// A plan with one schedule, for sensors that are alike.
+    /// Makes a plan with one schedule, for sensors that are alike.
     pub(crate) const fn new(schedule: AnySchedule) -> Self {
         Self { schedule, ladder: vec![], own_limits: EachSensor::NONE }
     }
@@ -168,24 +168,24 @@ pub(crate) struct RingStart<'s> {
 /// A way of firing.
 #[derive(Clone, Copy)]
 pub(super) struct Way {
-    /// The schedule with which a robot's ring starts; for dither the lags alone.
+    /// Returns the schedule with which a robot's ring starts; for dither it has only the lags.
     pub(super) schedule: fn(&Robot, Option<&AnySchedule>) -> Result<AnySchedule, ScheduleError>,
-    /// The ring's plan, from that schedule.
+    /// Returns the ring's plan, given that schedule.
     pub(super) plan: fn(&Robot, AnySchedule) -> Result<FiringPlan, StartError>,
-    /// The ring, ready to run.
+    /// Starts the ring.
     pub(super) ring: fn(&RingStart<'_>) -> Started,
-    /// Least time between two firings of a sensor, given by its number.
+    /// Returns the least time between two firings of a sensor, given by its number.
     pub(super) refire: fn(&Robot, &AnySchedule, usize) -> Micros,
 }
 
 impl Way {
-    /// The robot's own schedule, or the paper's.
+    /// Firing by the robot's own schedule, or by the paper's.
     pub(super) const OWN_TABLE: Self = Self { plan: plan_own, ..Self::by_table(schedules::own) };
     /// Immediate refiring.
     pub(super) const IMMEDIATE: Self =
         Self { ring: immediate, refire: |robot, _, _| robot.min_refire, ..Self::by_table(schedules::refiring) };
 
-    /// A way with one schedule, whose least refire time is the schedule's.
+    /// Makes a way with one schedule, which also sets the least time between two firings of a sensor.
     pub(super) const fn by_table(
         schedule: fn(&Robot, Option<&AnySchedule>) -> Result<AnySchedule, ScheduleError>,
     ) -> Self {
@@ -205,7 +205,7 @@ pub(crate) enum StartError {
     Ring(RingError),
     /// No schedule of the ladder keeps `t_delta` and window.
     Unverified(Violation),
-    /// The schedules make no ladder.
+    /// The schedules do not form a ladder.
     Ladder(ScheduleError),
     /// The first period cannot be fired.
     Own(OwnError),
@@ -220,7 +220,7 @@ impl From<RingError> for StartError {
 /// A running ring, or the error that prevented it.
 pub(crate) type Started = Result<Box<dyn RingRunner>, StartError>;
 
-/// Settings of a robot's ring for listening and comparing.
+/// Returns the settings by which a robot's ring listens and compares.
 pub(super) fn config_of(robot: &Robot) -> RingConfig {
     let &Robot { t_delta, window, blanking, consecutive, .. } = robot;
     let mut listens = RingConfig::new().with_t_delta(t_delta).with_window(window).with_blanking(blanking);
@@ -233,7 +233,7 @@ pub(super) const REMEMBERED: usize = 4;
 /// Number of remembered firings with immediate refiring, where a sensor may fire many times while another listens once.
 const REFIRED: usize = 16;
 
-/// A configuration in which silence counts as witnessed: a simulated sensor that hears nothing has listened.
+/// Makes silence count as witnessed: a simulated sensor that hears nothing has listened.
 pub(super) fn trusting<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize>(
     mut ring: Ring<P, J, K, E, H>,
 ) -> Ring<P, J, K, E, H> {
@@ -241,8 +241,8 @@ pub(super) fn trusting<P: Plan, J: Judge, const K: usize, const E: usize, const 
     ring
 }
 
-/// A robot's ring with this plan that remembers `H` firings of each sensor. It is no larger than needed, since some
-/// steps take time for each sensor that fits.
+/// Starts a robot's ring with this plan that remembers `H` firings of each sensor. The ring is no larger than needed,
+/// since some steps take time for each possible sensor.
 pub(super) fn run<P: SimulatedPlan, const H: usize>(
     plan: P,
     robot: &Robot,
@@ -257,7 +257,7 @@ pub(super) fn run<P: SimulatedPlan, const H: usize>(
     })
 }
 
-/// A ring with room for `K` sensors and `E` echoes.
+/// Makes a ring with room for `K` sensors and `E` echoes.
 pub(super) fn ring<P: Plan, const K: usize, const E: usize, const H: usize>(
     plan: P,
     robot: &Robot,
@@ -269,7 +269,7 @@ pub(super) fn ring<P: Plan, const K: usize, const E: usize, const H: usize>(
     Ok(trusting(Ring::judged_by(plan, judge, config.with_echoes(), now)?))
 }
 
-/// Scheduled firing, along a ladder if there is one.
+/// Starts scheduled firing, along a ladder if there is one.
 fn scheduled(start: &RingStart<'_>) -> Started {
     let &RingStart { robot, plan, ref judging, now, .. } = start;
     match judging.echoes {
@@ -282,7 +282,7 @@ fn scheduled(start: &RingStart<'_>) -> Started {
     }
 }
 
-/// The robot's own schedule, with the limits of each sensor if they are not all alike.
+/// Plans the robot's own schedule, with the limits of each sensor if they are not all alike.
 fn plan_own(robot: &Robot, schedule: AnySchedule) -> Result<FiringPlan, StartError> {
     if !robot.is_uneven() {
         return Ok(FiringPlan::new(schedule));
@@ -291,13 +291,13 @@ fn plan_own(robot: &Robot, schedule: AnySchedule) -> Result<FiringPlan, StartErr
     Ok(FiringPlan { own_limits, ..FiringPlan::new(schedule) })
 }
 
-/// Immediate refiring.
+/// Starts immediate refiring.
 fn immediate(start: &RingStart<'_>) -> Started {
     let &RingStart { robot, plan, ref judging, now, .. } = start;
     run::<_, REFIRED>(Refiring::new(Arc::new(plan.schedule), robot.min_refire, now), robot, judging, now)
 }
 
-/// A robot's ring that fires as planned, with at least `refire` between two firings of a sensor.
+/// Starts a robot's ring that fires as planned, with at least `refire` between two firings of a sensor.
 pub(crate) fn planned(
     firing: Box<dyn FiringMethod>,
     robot: &Robot,

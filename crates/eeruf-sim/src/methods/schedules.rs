@@ -4,34 +4,34 @@ use eeruf_core::{Micros, Phase, ScheduleError};
 
 use crate::world::{AnySchedule, Robot};
 
-/// A schedule that fires all sensors at once.
+/// Makes a schedule that fires all sensors at once.
 pub(super) fn together(robot: &Robot, _: Option<&AnySchedule>) -> Result<AnySchedule, ScheduleError> {
     constant(robot.period, &vec![Micros::ZERO; robot.sensors.len()])
 }
 
-/// A schedule that fires one sensor after the other, each when the one before is no longer heard.
+/// Makes a schedule that fires one sensor after the other, each when the sound of the one before has faded.
 pub(super) fn one_by_one(robot: &Robot, _: Option<&AnySchedule>) -> Result<AnySchedule, ScheduleError> {
     in_turns(robot, robot.sensors.len())
 }
 
-/// A schedule that fires sensors far apart together, group after group.
+/// Makes a schedule that fires sensors far apart together, group after group.
 pub(super) fn far_groups(robot: &Robot, _: Option<&AnySchedule>) -> Result<AnySchedule, ScheduleError> {
     in_turns(robot, robot.sensors.len().min(usize::from(robot.neighbours)))
 }
 
-/// The conventional lags, every period alike (Table I-a).
+/// Makes a schedule of the conventional lags, every period alike (Table I-a).
 pub(super) fn conventional(robot: &Robot, _: Option<&AnySchedule>) -> Result<AnySchedule, ScheduleError> {
     let Robot { ref sensors, period, neighbours, .. } = *robot;
     constant(period, &lags(sensors.len(), period, neighbours))
 }
 
-/// The robot's own schedule, or else the paper's table at its period.
+/// Returns the robot's own schedule, or else the paper's table at its period.
 pub(super) fn own(robot: &Robot, _: Option<&AnySchedule>) -> Result<AnySchedule, ScheduleError> {
     let Robot { ref sensors, period, neighbours, schedule, .. } = *robot;
     schedule.map_or_else(|| table_i_d_for(sensors.len(), period, neighbours), Ok)
 }
 
-/// The best schedule that is known, if it has as many sensors.
+/// Returns the best known schedule, if it has as many sensors.
 pub(super) fn best(robot: &Robot, best: Option<&AnySchedule>) -> Result<AnySchedule, ScheduleError> {
     match best {
         Some(best) if best.sensors() == robot.sensors.len() => Ok(*best),
@@ -39,8 +39,8 @@ pub(super) fn best(robot: &Robot, best: Option<&AnySchedule>) -> Result<AnySched
     }
 }
 
-/// The paper's waits for immediate refiring, each longer by the shortest refire time. Merely delaying a sensor until
-/// that time has passed would suit the transducer, but would make waits equal, so that nothing alternates.
+/// Makes a schedule of the paper's waits for immediate refiring, each longer by the shortest refire time. Delaying a
+/// sensor just until that time has passed would make waits equal, so that nothing alternates.
 pub(super) fn refiring(robot: &Robot, _: Option<&AnySchedule>) -> Result<AnySchedule, ScheduleError> {
     let Robot { ref sensors, period, neighbours, min_refire, .. } = *robot;
     let table = table_i_d_for(sensors.len(), period, neighbours)?;
@@ -48,14 +48,14 @@ pub(super) fn refiring(robot: &Robot, _: Option<&AnySchedule>) -> Result<AnySche
     AnySchedule::from_slices(period.saturating_add(min_refire), table.t_lag(), [&longer(Phase::A), &longer(Phase::B)])
 }
 
-/// The shortest time between two firings of a sensor by a schedule.
+/// Returns the shortest time between two firings of a sensor under a schedule.
 pub(super) fn soonest_refire(schedule: &AnySchedule, sensor: usize) -> Micros {
     let after = [Phase::A, Phase::B].map(|phase| schedule.refire_after(phase, sensor));
     after.into_iter().flatten().min().unwrap_or(schedule.min_refire())
 }
 
-/// Sensors in turns: each turn lasts as long as they listen or, if their modules are known, hear, and a round at least
-/// as long as the modules rest.
+/// Makes a schedule in which sensors take turns. A turn lasts as long as they listen or, if their modules are known, as
+/// long as they hear; a round lasts at least as long as the modules rest.
 fn in_turns(robot: &Robot, turns: usize) -> Result<AnySchedule, ScheduleError> {
     // A window that ends just when the next one begins still counts an echo at its very end.
     let turn = robot.window.max(robot.audible).saturating_add(Micros::new(1)).as_micros();
@@ -72,15 +72,15 @@ fn constant(period: Micros, lags: &[Micros]) -> Result<AnySchedule, ScheduleErro
     AnySchedule::from_slices(period, lags, [&none, &none])
 }
 
-/// The paper's Table I-d at another period, continued for more sensors or another number `n` of neighbours:
+/// Returns the paper's Table I-d at another period, continued for more sensors or another number `n` of neighbours:
 ///
 /// ```text
 /// T_lag = (i mod n) T_p / n                                      T_wait,a = W = 0.96 T_p / n
 /// T_wait,b = D (L (n - 1 - i mod n) + floor(i / n))              D = W / (L n),  L = max(3, ceil(K / n))
 /// ```
 ///
-/// For up to twelve sensors and four neighbours these are the table's own waits, sensors 1 to K, times `T_p / 100 ms`;
-/// the separation is `D`, 2 % of the period. More sensors share the same range of waits, so `D` shrinks.
+/// For up to twelve sensors and four neighbours these are the table's own waits of sensors 1 to K, times
+/// `T_p / 100 ms`; the separation `D` is 2 % of the period. More sensors share the same range of waits, so `D` shrinks.
 ///
 /// # Errors
 /// [`ScheduleError`] for no sensors, more than 64, or no period.
@@ -97,7 +97,7 @@ pub fn table_i_d_for(sensors: usize, period: Micros, neighbours: u8) -> Result<A
     let n = usize::from(neighbours.max(1));
     let rows = sensors.div_ceil(n).max(3);
     let widest = widest_wait(period, neighbours);
-    // D times a whole number, rounded once.
+    // A whole multiple of `D`, rounded once.
     let wait_b = |i: usize| {
         let steps = (rows * (n - 1 - i % n) + i / n) as u64;
         Micros::new((steps * u64::from(widest.as_micros()) / (rows * n) as u64) as u32)
@@ -118,8 +118,8 @@ fn lags(sensors: usize, period: Micros, neighbours: u8) -> Vec<Micros> {
     (0..sensors).map(lag).collect()
 }
 
-/// Largest shift of a firing by dither: as large as the paper's waits, but small enough that no sensor fires again
-/// while it listens.
+/// Returns the largest shift of a firing by dither: as large as the paper's waits, but small enough that no sensor
+/// fires again while it listens.
 pub(super) fn widest_dither(robot: &Robot) -> Micros {
     widest_wait(robot.period, robot.neighbours).min(robot.period.saturating_sub(robot.window))
 }
@@ -129,7 +129,7 @@ mod tests {
     use super::*;
     use eeruf_core::{Criterion, Requirements, tables::TABLE_I_D};
 
-    // The table continues to any number of sensors with all pairs apart.
+    // The table continues to any number of sensors, and all pairs stay apart.
     #[test]
     fn table_continues_to_any_number_of_sensors() {
         for (sensors, n) in [(1, 4), (8, 4), (12, 4), (24, 4), (64, 4), (16, 8), (5, 1), (9, 2)] {
@@ -144,7 +144,7 @@ mod tests {
         }
     }
 
-    // Set one fires by the first eight rows of table i d times six tenths.
+    // Set I fires by the first eight rows of Table I-d, times 0.6.
     #[test]
     fn set_one_fires_by_scaled_table_i_d() {
         let schedule = table_i_d_for(8, Micros::from_millis(60), 4).unwrap();

@@ -1,5 +1,5 @@
-//! Firing like today's sketches and modules: [`LanePlan`], in which sets of sensors take turns in parallel lanes, and
-//! each turn ends with the last echo or the time-out.
+//! Firing like today's sketches and modules: a [`LanePlan`] lets sets of sensors take turns in parallel lanes. Each
+//! turn ends with the last echo or the time-out.
 
 use eeruf_core::{
     Instant, MAX_PHASES, MAX_SENSORS, Micros, Phase,
@@ -12,12 +12,12 @@ use super::ring_runner::{self, REMEMBERED, RingStart, SimulatedPlan, Started, Wa
 use super::schedules;
 use crate::world::{FiringTable, Robot, Sketch};
 
-/// A way whose turns end when sensors answer.
+/// Makes a way whose turns end when sensors answer.
 pub(super) const fn way(ring: fn(&RingStart<'_>) -> Started) -> Way {
     Way { ring, refire: |_, _, _| Micros::ZERO, ..Way::by_table(schedules::together) }
 }
 
-/// A way with a table of any number of phases.
+/// A way that fires by a table of any number of phases.
 pub(super) const TABLE: Way = Way { ring: table, refire: |robot, _, _| robot.window, ..Way::by_table(schedules::own) };
 
 /// Fires one sensor after the other, each as soon as the one before has answered or timed out.
@@ -25,7 +25,7 @@ pub(super) fn in_turn(start: &RingStart<'_>) -> Started {
     lanes(start, vec![singly(0..start.robot.sensors.len() as u8)])
 }
 
-/// Time for which a blocking loop waits for an echo: as long as an HC-SR04 without one holds its line.
+/// Time for which a blocking loop waits for an echo: an HC-SR04 without an echo holds its line for that long.
 const BLOCKS: Micros = Micros::from_millis(38);
 /// Pause of a blocking loop.
 const BLOCKING_PAUSE: Micros = Micros::from_millis(10);
@@ -49,7 +49,7 @@ pub(super) fn arrays(start: &RingStart<'_>) -> Started {
     lanes(start, arrays.into_iter().filter(|array| !array.is_empty()).map(singly).collect())
 }
 
-/// Groups that fire together, in turn.
+/// Fires groups of sensors in turn, each group together.
 pub(super) fn groups(start: &RingStart<'_>) -> Started {
     let Robot { ref sensors, neighbours, .. } = *start.robot;
     let (sensors, apart) = (sensors.len() as u8, neighbours.min(sensors.len() as u8).max(1));
@@ -62,7 +62,7 @@ pub(super) fn sync_line(start: &RingStart<'_>) -> Started {
     lanes_resting(start, vec![vec![(0..start.robot.sensors.len() as u8).collect()]], start.robot.module_rest())
 }
 
-/// Fires each module by a clock of its own.
+/// Fires each module by its own clock.
 pub(super) fn free_running(start: &RingStart<'_>) -> Started {
     let Robot { ref sensors, ref firing, .. } = *start.robot;
     let rest = firing.rest.unwrap_or_else(|| start.robot.module_rest());
@@ -98,7 +98,7 @@ fn given_or(given: &[Vec<u8>], default: impl FnOnce() -> Vec<Vec<u8>>) -> Vec<Ve
     if given.is_empty() { default() } else { given.to_vec() }
 }
 
-/// The robot with its sketch's settings for listening and comparing.
+/// Returns the robot with its sketch's settings for listening and comparing.
 fn listening(robot: &Robot) -> Robot {
     let Sketch { timeout, consecutive, .. } = robot.firing;
     Robot { window: timeout.unwrap_or(robot.window), consecutive: consecutive.max(2), ..robot.clone() }
@@ -139,7 +139,7 @@ impl FiringMethod for ByTable {
         let FiringTable { period: length, rows } = &self.0;
         let phase = period as usize % rows.len().max(1);
         let times = rows.get(phase).map_or(&[][..], Vec::as_slice);
-        // At most 64 sensors. Nothing compares by phases, of which a reading's number has eight.
+        // At most 64 sensors. A reading's number has eight phases, but nothing compares by them here.
         let firings = times.iter().zip(0..).map(|(&time, sensor)| (time, sensor)).collect();
         Ok(FiringPeriod { length: *length, phase: Phase((phase % MAX_PHASES) as u8), firings })
     }
@@ -149,11 +149,11 @@ impl FiringMethod for ByTable {
     }
 }
 
-/// Sets of sensors that take turns: the next set fires when every sensor of the one before has ended.
+/// Sets of sensors that take turns: the next set fires when every sensor of the set before has ended.
 #[derive(Clone, Debug)]
 struct Lane {
     sets: Vec<Vec<u8>>,
-    /// The current set, and how many of its sensors have had their turn.
+    /// The current set, and the number of its sensors that have had their turn.
     set: usize,
     place: usize,
     /// Time when the turn began or begins.
@@ -162,7 +162,7 @@ struct Lane {
     pending: u64,
     /// The time from one turn to the next, if it is fixed.
     cycle: Option<Micros>,
-    /// The listening time of its sensors, and the time that they take if they hear nothing, if that is longer.
+    /// The listening time of its sensors and, if longer, the time that a turn takes if they hear nothing.
     silent: Option<(Micros, Micros)>,
 }
 
@@ -171,7 +171,7 @@ impl Lane {
         Self { sets, set: 0, place: 0, due, pending: 0, cycle: None, silent: None }
     }
 
-    /// The sensor of the present set that fires next; `None` while the set listens.
+    /// Returns the sensor of the present set that fires next; `None` while the set listens.
     fn next(&self) -> Option<u8> {
         self.sets.get(self.set)?.get(self.place).copied()
     }
@@ -203,7 +203,7 @@ impl LanePlan {
         self.period_start + self.period
     }
 
-    /// The lane that is due first, measured from the start of the period like its end.
+    /// Returns the lane that is due first, measured from the start of the period like its end.
     fn first(&self) -> Option<usize> {
         if self.paused {
             return None;
@@ -219,7 +219,7 @@ impl LanePlan {
         let enabled = self.enabled;
         let may_fire = |sensor: u8| enabled.get(usize::from(sensor)).is_some_and(|&enabled| enabled);
         let Some(lane) = self.lanes.get_mut(index) else { return };
-        // Each set once, so that a lane without enabled sensors comes to rest.
+        // Each set is visited once, so that a lane without enabled sensors stops.
         for _ in 0..=lane.sets.len() {
             while lane.next().is_some_and(|sensor| !may_fire(sensor)) {
                 lane.place += 1;
@@ -235,12 +235,12 @@ impl LanePlan {
                 }
             }
         }
-        // No sensor of it is enabled: it waits at the end of a set.
+        // No sensor of the lane is enabled: it waits at the end of a set.
         lane.place = lane.sets.get(lane.set).map_or(0, Vec::len);
     }
 }
 
-/// The later of two instants that lie within half a turn of the clock.
+/// Returns the later of two instants that lie within half a turn of the clock.
 fn later(one: Instant, other: Instant) -> Instant {
     if one.has_reached(other) { one } else { other }
 }
@@ -281,7 +281,7 @@ impl Plan for LanePlan {
         if now.has_reached(self.period_end()) {
             self.period_start = now;
         }
-        // What waits stays due, but must not fall half a turn of the clock behind.
+        // A waiting lane stays due, but must not fall half a turn of the clock behind.
         for lane in self.lanes.iter_mut().filter(|lane| lane.pending == 0) {
             lane.due = later(lane.due, now);
         }
@@ -331,7 +331,7 @@ impl Plan for LanePlan {
         self.period_start = now;
         let horizon = self.horizon();
         for triggered in &mut self.triggered {
-            // A clock that has jumped says nothing about when a sensor was triggered.
+            // After a jump of the clock the time of a sensor's trigger is unknown.
             let recent = triggered.filter(|&at| now.has_reached(at) && now.since(at) <= horizon);
             *triggered = recent;
         }
@@ -348,7 +348,7 @@ impl Plan for LanePlan {
     }
 
     fn limits(&self) -> PlanLimits<'_> {
-        // It fires only what has ended.
+        // The plan fires only sensors that have ended.
         PlanLimits { longest_window: Micros::MAX, verified_for: None, audible: None }
     }
 

@@ -35,7 +35,7 @@ impl Default for LabMate {
     }
 }
 
-/// The pose and motion of a platform. Two driven wheels can only carry it along its heading.
+/// The pose and motion of a platform. Its two driven wheels can only carry it along its heading.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Driven {
     /// Place and heading.
@@ -52,15 +52,15 @@ impl Driven {
         Self { pose, speed_m_s: 0.0, turn_rad_s: 0.0 }
     }
 
-    /// Pose and velocity `after_s` seconds later, at constant speeds.
+    /// Returns pose and velocity `after_s` seconds later, at constant speeds.
     pub fn moment(&self, after_s: f64) -> Moment {
         let pose = self.carried(after_s);
         let velocity = pose.rotation * Vector::new(self.speed_m_s, 0.0);
         Moment { pose, velocity, turn_rad_s: self.turn_rad_s }
     }
 
-    /// The pose after moving along the arc of both speeds, approximated by its chord: for the few milliseconds of a
-    /// step the difference is far below a micrometre.
+    /// Returns the pose after moving along the arc of both speeds, approximated by its chord: for the few milliseconds
+    /// of a step the difference is far below a micrometre.
     fn carried(&self, for_s: f64) -> Pose {
         let heading = self.pose.rotation.angle();
         let turned = self.turn_rad_s * for_s;

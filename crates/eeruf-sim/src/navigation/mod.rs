@@ -1,4 +1,4 @@
-//! From range readings to motion: certainty grid (HIMM), vector field histogram (VFH) and a platform with two driven
+//! Steering by range readings: certainty grid (HIMM), vector field histogram (VFH) and a platform with two driven
 //! wheels. It uses `geometry`, and `scene` for the platform's outline; it can be used without sonar.
 
 mod differential_drive;

@@ -1,17 +1,17 @@
-//! Parameters for steering a robot by its readings, which a search for pilots varies.
+//! Parameters for steering a robot by its readings; a search for pilots varies them.
 
 use super::Vfh;
 
-/// The way from readings to steering.
+/// Parameters of the steering.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Piloting {
     /// The vector field histogram; its highest speed is the platform's.
     pub vfh: Vfh,
     /// Rate of turn for a steering error of a radian, in rad/s.
     pub turn_gain: f64,
-    /// Range in metres beyond which echoes are not entered into the grid, but only clear the way.
+    /// Range in metres beyond which an echo is not entered into the grid, but only clears the cells before it.
     pub range_m: f64,
-    /// True if cells beside certain ones grow faster, see [`Himm::growth`](super::Himm::growth).
+    /// True if cells next to certain ones grow faster, see [`Himm::growth`](super::Himm::growth).
     pub growth: bool,
 }
 

@@ -1,4 +1,4 @@
-//! Ways of firing, judged in rooms, and the one to recommend.
+//! Ways of firing, judged in rooms, and the recommended one.
 
 use eeruf_modules::Gain;
 use serde::Serialize;
@@ -67,11 +67,11 @@ impl RoomGroup {
         Some(Self { name, rooms: vec![plan] })
     }
 
-    /// Places in the known free space of a map, like the rooms of [`of_kind`](Self::of_kind): half of the robots stand
-    /// square to it.
+    /// Places in the known free space of a map, drawn like the rooms of [`of_kind`](Self::of_kind): half of the robots
+    /// stand square to the map.
     ///
     /// # Errors
-    /// The width for which no free space was found.
+    /// The required width, if no free space is that wide.
     pub fn of_map(
         name: String,
         grid: &OccupancyGrid,
@@ -92,8 +92,8 @@ impl RoomGroup {
     }
 }
 
-/// The figures of a way in rooms of one kind, of one robot: shares of time and rates are means; figures for which a way
-/// is refused are those of the median room.
+/// One robot's figures of a way in rooms of one kind. Shares of time and rates are means; figures that can disqualify a
+/// way are those of the median room.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RoomFigures {
     /// Shares of the time by what was last believed.
@@ -101,19 +101,19 @@ pub struct RoomFigures {
     pub belief: BeliefShares,
     /// 95 % confidence interval of the mean share that is right.
     pub belief_right_95: [f64; 2],
-    /// The least share of any room that is right.
+    /// The least right share of any room.
     pub belief_right_worst: f64,
-    /// Accepted echoes that were right in a second.
+    /// Right echoes accepted per second.
     pub right_echoes_per_s: f64,
     /// 95 % confidence interval of this mean.
     pub right_echoes_per_s_95: [f64; 2],
     /// Share of wrong foreign sound among accepted readings.
     pub foreign_of_believed: f64,
-    /// Largest share of foreign sound among what a sensor believed.
+    /// Largest share of foreign sound among the readings that one sensor believed.
     pub foreign_of_believed_worst: f64,
     /// Share of wrong own sound among accepted readings.
     pub own_wrong_of_believed: f64,
-    /// Sensors that were right under 5 % of the times they fired.
+    /// Number of sensors that were right under 5 % of the times they fired.
     pub blind: f64,
     /// 99th percentile of the age of the last accepted reading, in milliseconds.
     pub age_p99_ms: f64,
@@ -124,9 +124,9 @@ pub struct RoomFigures {
 pub struct JudgedWay {
     /// The way.
     pub way: RoomWay,
-    /// The figures in each group of rooms, in the order asked for; or why it cannot fire this ring.
+    /// The figures in each group of rooms, in the order asked for; or the reason why the way cannot fire this ring.
     pub rooms: Result<Vec<RoomFigures>, String>,
-    /// Least and largest number of blind sensors in 90 % of all rooms judged. Zeros if it cannot fire the ring.
+    /// Least and largest number of blind sensors in 90 % of all rooms judged. Zeros if the way cannot fire the ring.
     pub blind_90: [f64; 2],
     /// 95 % confidence interval of [`echoes_against`](Self::echoes_against) the first way: from the differences among
     /// rooms of a kind. `None` if one of the two cannot fire the ring, or if no kind has two rooms.
@@ -138,20 +138,20 @@ pub struct JudgedWay {
 pub struct Judgement {
     /// The ways, in the order asked for.
     pub ways: Vec<JudgedWay>,
-    /// The index of the way to recommend, among those that a program can have; `None` if no such way can fire the ring.
+    /// The index of the recommended way, among those that a program can have; `None` if no such way can fire the ring.
     pub recommended: Option<usize>,
-    /// True if that way keeps the limits in each kind of room.
+    /// True if the recommended way keeps the limits in each kind of room.
     pub keeps: bool,
 }
 
 impl Judgement {
-    /// The way to recommend.
+    /// The recommended way.
     pub fn best(&self) -> Option<&JudgedWay> {
         self.recommended.and_then(|index| self.ways.get(index))
     }
 
-    /// The judgement without some groups of rooms, given by index; `None` if no group is left out or none remains.
-    /// [`JudgedWay::blind_90`] and [`JudgedWay::times_95`] stay those of all rooms.
+    /// Returns the judgement without some groups of rooms, given by index; `None` if no group is left out or none
+    /// remains. [`JudgedWay::blind_90`] and [`JudgedWay::times_95`] still cover all rooms.
     pub fn without(&self, left_out: impl Fn(usize) -> bool, wrong: f64) -> Option<Self> {
         let mut ways = self.ways.clone();
         let mut fewer = false;
@@ -228,13 +228,13 @@ impl RoomFigures {
     }
 }
 
-/// Judges ways of firing in rooms, on all cores; the first is one by one, with which the others are compared.
+/// Judges ways of firing in rooms, on all cores. The first way is one by one, with which the others are compared.
 ///
 /// Several threads sometimes call `keep_going` with the finished share, 0 to 1; if it returns `false`, the judgement
 /// stops. The result does not depend on the number of threads.
 ///
 /// # Errors
-/// [`ExperimentError`] for no rooms or ways, a room in which the robot cannot be, and if it was stopped.
+/// [`ExperimentError`] for no rooms or ways, for a room too small for the robot, and if it was stopped.
 pub fn judge(
     ways: &[RoomWay],
     rooms: &[RoomGroup],
@@ -256,7 +256,7 @@ pub fn judge(
         }
         let RoomWay { method, robot, options, .. } = &ways[way];
         let world = world_of(room, robot, asked)?;
-        // All for the same time, which a way's period measures.
+        // All ways are simulated for the same time, counted in periods of the way.
         let seconds = if asked.speed_m_s > 0.0 { DRIVING_S } else { STANDING_S };
         let periods = (1e6 * seconds / f64::from(robot.period.as_micros())).ceil() as u32;
         let options = Options { periods, ..*options };
@@ -295,7 +295,7 @@ pub fn judge(
     Ok(Judgement { ways, recommended, keeps })
 }
 
-/// The numbers of blind sensors between which 90 % of rooms lie. Rooms with several robots can have fractions.
+/// Returns the least and largest number of blind sensors in 90 % of rooms, rounded outwards.
 fn blind_90(runs: &[Run]) -> [f64; 2] {
     let mut blind: Vec<f64> = runs.iter().map(|run| run.blind).collect();
     [libm::floor(quantile(&mut blind, 0.05)), libm::ceil(quantile(&mut blind, 0.95))]
@@ -349,9 +349,9 @@ pub fn with_other_gain(robot: &Robot) -> Robot {
     robot.clone().with_pattern(Some(other), None)
 }
 
-/// Excess of own wrong echoes over those of one by one that is allowed, as a share.
+/// Allowed excess of own wrong echoes over those of one by one, as a share.
 const OWN_WRONG_MORE: f64 = 0.01;
-/// Difference of right belief below which two ways are equal, so that the one with more right echoes is better.
+/// Difference of right belief below which two ways are equally good; more right echoes then decide.
 const AS_GOOD: f64 = 0.01;
 /// Ratio of right echoes below which one by one, which needs no library, is as good as another way.
 const WORTH_A_LIBRARY: f64 = 1.2;
@@ -373,8 +373,8 @@ impl JudgedWay {
         Some(libm::exp(logs / own.len() as f64))
     }
 
-    /// The index of the first group of rooms in which a way is wrong too often, or leaves a sensor blind that one by
-    /// one does not.
+    /// The index of the first group of rooms in which the way is wrong too often, or leaves more sensors blind than one
+    /// by one.
     pub fn fails_in(&self, one_by_one: &Self, wrong: f64) -> Option<usize> {
         let (Ok(own), Ok(base)) = (&self.rooms, &one_by_one.rooms) else { return None };
         let fails = |own: &RoomFigures, base: &RoomFigures| {
@@ -386,9 +386,9 @@ impl JudgedWay {
     }
 }
 
-/// The way, among those that a program can have, that keeps the limits and is right most of the time; among equal ones
-/// the one with most right echoes, or one by one if that has hardly fewer. If none keeps the limits, the one that is
-/// right most of the time.
+/// Returns the index of the best way that a program can have and that keeps the limits, with true, or of the best of
+/// all if none keeps them, with false. The best is right most of the time; among equals it has the most right echoes,
+/// or is one by one if that has hardly fewer.
 fn recommend(ways: &[JudgedWay], wrong: f64) -> (Option<usize>, bool) {
     let Some(base) = ways.first() else { return (None, false) };
     let best_of = |among: &dyn Fn(&JudgedWay) -> bool| {
@@ -452,7 +452,7 @@ mod tests {
         let base = Ok([USUAL; 2]);
         assert_eq!(chosen(&[base, Ok([right(0.95, 9.0); 2]), Ok([right(0.8, 99.0); 2])]), (Some(1), true));
         assert_eq!(chosen(&[base, Ok([right(0.95, 9.0); 2]), Ok([right(0.945, 20.0); 2])]), (Some(2), true));
-        // Hardly more echoes than one by one are not worth a library.
+        // A way with hardly more echoes than one by one is not worth a library.
         assert_eq!(chosen(&[base, Ok([right(0.905, 11.5); 2])]), (Some(0), true));
         assert_eq!(chosen(&[base, Ok([right(0.905, 12.5); 2])]), (Some(1), true));
         // A way without a program is not recommended.
@@ -460,7 +460,7 @@ mod tests {
         ways[1].way.name = "arrays";
         ways[1].way.method = Method::Arrays;
         assert_eq!(recommend(&ways, 0.03), (Some(0), true));
-        // What cannot fire is passed over.
+        // A way that cannot fire the ring is passed over.
         assert_eq!(chosen(&[base, Err("too fast")]), (Some(0), true));
         assert_eq!(chosen(&[Err("too fast")]), (None, false));
     }
@@ -475,7 +475,7 @@ mod tests {
         ];
         for worse in worse {
             assert_eq!(chosen(&[Ok([USUAL; 2]), Ok([good, worse])]), (Some(0), true), "{worse:?}");
-            // Where all are refused, the one that is right most is named, and said to be refused.
+            // If all ways exceed the limits, the one that is right most is named, and marked as exceeding them.
             let base = RoomFigures { foreign_of_believed: 0.5, ..USUAL };
             assert_eq!(chosen(&[Ok([base; 2]), Ok([good, worse])]).0, Some(1), "{worse:?}");
         }

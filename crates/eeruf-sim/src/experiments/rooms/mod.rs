@@ -1,8 +1,8 @@
-//! Rooms in which a ring is judged: which way of firing it is right most of the time.
+//! Rooms in which ways of firing a ring are judged, to recommend the one that is right most of the time.
 //!
-//! The paper's sets test a method before three walls and among poles; users want to know how it does in their own
-//! rooms. [`RoomPlan`] is a versioned set of rooms of eight [kinds](RoomKind), [`RoomWay`] the ways of firing one ring,
-//! baselines first, and [`judge`] runs each way in each room and recommends one.
+//! The paper's sets test a method before three walls and among poles; users want its results in their own rooms.
+//! [`RoomPlan`] is a versioned set of rooms of eight [kinds](RoomKind). [`RoomWay`] is a way of firing one ring,
+//! baselines first. [`judge`] runs each way in each room and recommends one.
 
 mod judge;
 mod plan;

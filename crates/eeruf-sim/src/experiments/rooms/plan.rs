@@ -1,4 +1,4 @@
-//! Rooms in which rings are judged: what stands in each, where the robot is and how it drives.
+//! Rooms in which rings are judged: the objects in each, and the robot's place and motion.
 
 use core::f64::consts::{FRAC_PI_2, PI, TAU};
 use core::fmt;
@@ -18,9 +18,9 @@ pub const VERSION: u32 = 1;
 /// Simulated time of a driving robot, in seconds, for which it has a free way.
 pub const DRIVING_S: f64 = 8.0;
 
-/// The random key of places in maps, beside those of the kinds.
+/// The random key of places in maps, next to the keys of the kinds.
 const MAP: u64 = 100;
-/// Number of places drawn in a map, one of which must be wide enough.
+/// Largest number of places drawn in a map to find one that is wide enough.
 const MOST_DRAWN: u32 = 100_000;
 
 /// Free space that is kept around a robot, in metres.
@@ -35,7 +35,7 @@ pub enum RoomKind {
     Office,
     /// A bare hall of 8 to 12 by 6 to 9 m.
     Hall,
-    /// A hall as large with three to six cupboards and two to four poles.
+    /// A hall of the same size with three to six cupboards and two to four poles.
     Clutter,
     /// Three walls 1 to 2.4 m apart and 0.9 to 2 m deep, the robot in the mouth: the paper's Set I.
     Alcove,
@@ -116,7 +116,7 @@ impl FromStr for RoomKind {
 /// A room with a place in it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RoomPlan {
-    /// The kind's number in the set, or the file's own; it seeds all that is random.
+    /// The room's number in the set, or the file's own; it seeds all random values.
     pub number: u64,
     /// The walls.
     pub walls: Vec<Wall>,
@@ -178,7 +178,7 @@ impl Draft {
         solids.chain(poles).fold(walls, f64::min)
     }
 
-    /// The roomiest of several places drawn in the middle part of the room.
+    /// Returns the first place drawn that is wide enough in the middle part of the room, or else the widest of 200.
     fn place(&self, random: &mut Random, share: f64, radius_m: f64) -> Vector {
         let mut best = ([0.0; 2], f64::NEG_INFINITY);
         for _ in 0..200 {
@@ -202,7 +202,7 @@ impl Draft {
     }
 }
 
-/// The direction of the longest free way from a place, and its length in metres, at most what a robot drives.
+/// Returns the direction of the longest free way from a place, and its length in metres, up to what a robot drives.
 fn longest_way(from: Vector, directions: &[f64], is_free: impl Fn(Vector) -> bool) -> (Vector, f64) {
     const STEP_M: f64 = 0.05;
     let ways = directions.iter().map(|&rad| {
@@ -214,13 +214,13 @@ fn longest_way(from: Vector, directions: &[f64], is_free: impl Fn(Vector) -> boo
     longest.unwrap_or((Vector::new(1.0, 0.0), 0.0))
 }
 
-/// Directions all round.
+/// Sixteen directions all round.
 fn directions() -> Vec<f64> {
     (0..16).map(|k| TAU * f64::from(k) / 16.0).collect()
 }
 
 impl RoomPlan {
-    /// The room that a number stands for, of a kind, for a robot that needs a circle of this radius. If that does not
+    /// Returns the room of a kind and number, for a robot that needs a circle of this radius. If the robot does not
     /// fit, the room is made larger.
     pub fn random(kind: RoomKind, number: u64, radius_m: f64) -> Self {
         let mut random = Random::new(number).of(kind as u64);
@@ -231,7 +231,7 @@ impl RoomPlan {
         let turn = |random: &mut Random| {
             if is_square { FRAC_PI_2 * (random.bits() % 4) as f64 + tilt } else { random.between(0.0, TAU) }
         };
-        // Wide enough for the robot.
+        // The room is at least as wide as the robot needs.
         let wide = |width: f64| width.max(2.0 * radius_m + 0.1);
         if kind == RoomKind::Alcove {
             return Self::alcove(number, &mut random, radius_m, tilt, is_square);
@@ -249,7 +249,7 @@ impl RoomPlan {
             let room = (0.5 * draft.size[1] - radius_m).max(0.0);
             Pose::new(Vector::new(ahead.x, random.between(-room, room)), random.between(0.0, TAU))
         });
-        // Away from the other robot along a corridor, and where most room is elsewhere.
+        // The way leads away from the other robot along a corridor; without one it leads where there is most room.
         let directions = match kind {
             RoomKind::Meeting => vec![PI],
             _ => directions(),
@@ -258,7 +258,7 @@ impl RoomPlan {
         Self { number, walls: draft.walls(), poles: draft.poles, pose, other, way, turns: true }
     }
 
-    /// Three walls with the robot in the mouth, looking in.
+    /// Makes three walls with the robot in the mouth, looking in.
     fn alcove(number: u64, random: &mut Random, radius_m: f64, tilt: f64, is_square: bool) -> Self {
         let half = (0.5 * random.between(1.0, 2.4)).max(radius_m);
         let depth = random.between(0.9, 2.0) + (radius_m - 0.5).max(0.0);
@@ -273,14 +273,14 @@ impl RoomPlan {
             poles: vec![],
             pose: Pose::new(Vector::new(x, y), FRAC_PI_2 + heading),
             other: None,
-            // It backs out.
+            // The robot backs out.
             way: (Vector::new(0.0, -1.0), 10.0),
             turns: false,
         }
     }
 
-    /// The place that a number stands for in a map, among those that are `free`, for a robot that needs a circle of
-    /// this radius; `None` if no free space is wide enough. The walls are the map's.
+    /// Returns a place in a map by its number, one of the places in `free`, for a robot that needs a circle of this
+    /// radius; `None` if no free space is wide enough. The walls are the map's.
     pub(super) fn in_map(
         grid: &OccupancyGrid,
         free: &[[f64; 2]],
@@ -295,7 +295,7 @@ impl RoomPlan {
         let tilt = random.between(-2.0, 2.0).to_radians();
         let square = grid.heading_rad() + FRAC_PI_2 * (random.bits() % 4) as f64 + tilt;
         let any = random.between(0.0, TAU);
-        // As in the set: half of the robots stand square to the map.
+        // As in the set, half of the robots stand square to the map.
         let heading = if number.is_multiple_of(2) { square } else { any };
         let drawn = (0..MOST_DRAWN).filter_map(|_| free.get(random.bits().checked_rem(free.len() as u64)? as usize));
         let at = drawn.map(|&[x, y]| Vector::new(x, y)).find(|&at| is_free(at))?;
@@ -304,13 +304,13 @@ impl RoomPlan {
         Some(Self { number, walls, poles: vec![], pose, other: None, way, turns: true })
     }
 
-    /// A room of the caller's own, with the robot at a place, from which it can drive this far ahead.
+    /// Makes the caller's own room, with the robot at a place from which it can drive this far ahead.
     pub fn own(number: u64, walls: Vec<Wall>, poles: Vec<Pole>, pose: Pose, way_m: f64) -> Self {
         let ahead = Vector::new(pose.rotation.re, pose.rotation.im);
         Self { number, walls, poles, pose, other: None, way: (ahead, way_m), turns: false }
     }
 
-    /// Walls and poles.
+    /// Returns the walls and poles as a scene.
     ///
     /// # Errors
     /// [`SceneError`] for measures that make no walls.
@@ -318,7 +318,7 @@ impl RoomPlan {
         Scene::new(self.walls.clone(), self.poles.clone(), Air::default())
     }
 
-    /// The world with a robot in its place, standing or driving at this speed, or more slowly if it would meet
+    /// Returns the world with a robot in its place, standing or driving at this speed, or more slowly if it would meet
     /// something within [`DRIVING_S`]. Another robot of its make has its own clock.
     ///
     /// # Errors
@@ -337,7 +337,7 @@ impl RoomPlan {
         self.turns
     }
 
-    /// The world with a robot that drives off at this speed, or turns where it stands.
+    /// Returns the world with a robot that drives off at this speed, or turns on the spot.
     pub(in crate::experiments) fn moving(
         &self,
         robot: &Robot,
@@ -350,7 +350,7 @@ impl RoomPlan {
             true => Motion::Constant { velocity: speed_m_s * direction, turn_rad_s },
             false => Motion::Still,
         };
-        // The alcove's robot looks at what it backs away from.
+        // The alcove's robot faces the alcove while it backs away.
         let pose = if speed_m_s > 0.0 && self.turns {
             Pose::new(self.pose.translation.vector, libm::atan2(direction.y, direction.x))
         } else {

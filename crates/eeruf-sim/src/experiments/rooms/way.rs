@@ -12,7 +12,7 @@ use crate::{
 /// A way of firing a ring.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RoomWay {
-    /// The name in tables and in JSON: that of its method, with the differences.
+    /// The name in tables and in JSON: the method's name, with the differences.
     pub name: &'static str,
     /// The method.
     pub method: Method,
@@ -23,11 +23,11 @@ pub struct RoomWay {
 }
 
 impl RoomWay {
-    /// The ways for a ring, the baselines first. All listen for the robot's window, flow for no longer than it
-    /// [reaches](Robot::reach).
+    /// Returns the ways for a ring, the baselines first. All listen for the robot's window, but flow for no longer than
+    /// its [reach](Robot::reach).
     ///
-    /// `schedule` is a schedule of two phases for it, the shortest; without one there are no ways of two phases. No way
-    /// uses `robot.period`.
+    /// `schedule` is the shortest schedule of two phases for the ring; without it there are no ways of two phases. No
+    /// way uses `robot.period`.
     pub fn all(robot: &Robot, schedule: Option<&AnySchedule>) -> Vec<Self> {
         let way = |name, method, period: Micros| Self {
             name,
@@ -35,7 +35,7 @@ impl RoomWay {
             robot: Robot { period, odometry: false, ..robot.clone() },
             options: Options::default(),
         };
-        // What a module is not triggered before, and what it may still hear of its own sound.
+        // A module may neither be triggered before its rest is over, nor while it may still hear its own sound.
         let rest = robot.module_rest().max(robot.audible).max(robot.window).saturating_add(Micros::new(1));
         let mut ways = vec![
             way("sequential", Method::Sequential, rest),
@@ -50,7 +50,7 @@ impl RoomWay {
             arrays.robot.firing.rest = Some(robot.module_rest());
             ways.push(arrays);
         }
-        // At its own period, half as long again, and twice as long.
+        // The schedule runs at its own period, at 1.5 times, and at twice the period.
         for (name, (numerator, denominator)) in [("eeruf", (1, 1)), ("eeruf_x1.5", (3, 2)), ("eeruf_x2", (2, 1))] {
             let scaled = schedule.and_then(|schedule| schedule.scaled(numerator, denominator).ok());
             ways.extend(scaled.map(|schedule| {

@@ -7,9 +7,9 @@ use crate::{
     world::{Noise, Random, Robot, World, WorldError},
 };
 
-/// Number of sensors the ring has: a choice, as the paper leaves Set I open (see `docs/log/experiments.md`).
+/// Number of sensors in the ring: a choice, as the paper does not give it (see `docs/log/experiments.md`).
 pub const SENSORS: usize = 8;
-/// Spacing of the sensors, in degrees: that of the paper's ring.
+/// Spacing of the sensors, in degrees: as in the paper's ring.
 pub const SPACING_DEG: f64 = 15.0;
 /// The radius of the sensors' arc, in metres: a choice.
 pub const RADIUS_M: f64 = 0.30;
@@ -29,7 +29,7 @@ pub struct Alcove {
 }
 
 impl Alcove {
-    /// The alcove that a number stands for: one of the set's random geometries.
+    /// Returns the alcove of a number: one of the set's random geometries.
     pub fn random(number: u64) -> Self {
         let mut random = Random::new(number);
         let width_m = random.between(1.0, 2.4);
@@ -68,7 +68,7 @@ impl Alcove {
         Robot::ring(pose, sensors, SPACING_DEG.to_radians(), RADIUS_M, Transducer::POLAROID_6500)
     }
 
-    /// Walls and robot together, with the default noise, and sound followed up to six bounces.
+    /// Returns walls and robot together, with the default noise and up to six bounces of sound.
     ///
     /// # Errors
     /// [`WorldError`] for measures that make no walls or leave no room for the robot.

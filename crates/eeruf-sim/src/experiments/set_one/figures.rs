@@ -11,9 +11,9 @@ use crate::{
 /// The result of one geometry under one method.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Run {
-    /// The geometry's number, which seeds all that is random.
+    /// The geometry's number, which seeds all random values.
     pub seed: u64,
-    /// The figures of the alcove as it is.
+    /// The figures of the unchanged alcove.
     pub summary: Summary,
     /// Steps of the back wall, which moves back and forth.
     #[serde(flatten)]
@@ -42,19 +42,19 @@ pub struct Figures {
     pub age_ms: Option<Spread>,
     /// The age that 99 % of the last accepted readings do not exceed, in milliseconds.
     pub age_p99_ms: Option<Spread>,
-    /// Accepted readings in a second, all sensors together.
+    /// Accepted readings per second, all sensors together.
     pub readings_per_s: Option<Spread>,
-    /// Share of the time in which what was last believed is right, as in [`BeliefShares`](crate::BeliefShares).
+    /// Share of the time in which the last belief is right, as in [`BeliefShares`](crate::BeliefShares).
     pub belief_right: Option<Spread>,
     /// Share of the time in which nothing is believed.
     pub unknown: Option<Spread>,
     /// Share of the time in which foreign sound is believed.
     pub phantom: Option<Spread>,
-    /// Share of the time in which an own later echo is believed.
+    /// Share of the time in which one of the sensor's own later echoes is believed.
     pub too_far: Option<Spread>,
-    /// Share of the time in which an own nearer echo is believed.
+    /// Share of the time in which one of the sensor's own nearer echoes is believed.
     pub faint: Option<Spread>,
-    /// Accepted echoes that were right in a second, all sensors together.
+    /// Right echoes accepted per second, all sensors together.
     pub right_echoes_per_s: Option<Spread>,
     /// Mean number of sensors that had fewer than 5 % of their readings accepted.
     pub starved: f64,
@@ -64,9 +64,9 @@ pub struct Figures {
     pub blind: f64,
     /// Mean number of starved sensors that read right in one phase and not in another.
     pub starved_in_part: f64,
-    /// Time until the back wall is read right again when it has come nearer by [`STEP_M`](super::STEP_M).
+    /// Time until the back wall is read right after it has come nearer by [`STEP_M`](super::STEP_M).
     pub nearer: Option<Latency>,
-    /// Time until the wall is read right after it has moved away by as much.
+    /// Time until the wall is read right after it has moved away by the same step.
     pub farther: Option<Latency>,
     /// Latency when the wall comes nearer for the first time, in milliseconds.
     pub new_step: Option<NewStep>,

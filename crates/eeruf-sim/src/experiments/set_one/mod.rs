@@ -1,9 +1,9 @@
-//! Set I (Sec. 4): eight sensors before three walls at right angles, each reading compared with what the sensor reads
-//! alone.
+//! Set I (Sec. 4): eight sensors before three walls at right angles. Each reading is compared with the sensor's reading
+//! if it were alone.
 //!
-//! The paper does not give the dimensions of the alcove. Here it is a U 1.0 to 2.4 m wide and 0.9 to 2.0 m deep, with a
-//! ring of radius 0.30 m in or near its mouth that heads into it within 20 degrees. Everything else is as
-//! [`Robot::ring`](crate::Robot::ring) has it: a period of 60 ms, a window of 36 ms, `T_delta` = 0.5 ms.
+//! The paper does not give the dimensions of the alcove. Here it is a U 1.0 to 2.4 m wide and 0.9 to 2.0 m deep. A ring
+//! of radius 0.30 m in or near its mouth heads into it within 20 degrees. Everything else is the default of
+//! [`Robot::ring`](crate::Robot::ring): a period of 60 ms, a window of 36 ms, `T_delta` = 0.5 ms.
 
 mod alcove;
 mod figures;

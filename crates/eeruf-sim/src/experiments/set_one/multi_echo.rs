@@ -4,18 +4,18 @@ use eeruf_core::Micros;
 
 use crate::world::Robot;
 
-/// The settings by which [`Method::MultiEcho`](crate::Method::MultiEcho) compares. With up to eight echoes a firing,
-/// pairs of them agree by accident in proportion to `t_delta`; a robot that stands needs only the jitter.
+/// Settings for the comparison of several echoes by [`Method::MultiEcho`](crate::Method::MultiEcho). With up to eight
+/// echoes a firing, more pairs agree by accident the larger `t_delta` is; a standing robot needs only the jitter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MultiEcho {
-    /// Number of readings that must agree, 2 to 8. As many periods pass before a new echo is believed.
+    /// Number of readings that must agree, 2 to 8. A new echo is believed after as many periods.
     pub consecutive: u8,
     /// Greatest difference of readings that agree.
     pub t_delta: Micros,
 }
 
 impl MultiEcho {
-    /// The best of the grid that `cargo lab tune` tries on alcoves below 2,000, by the sum of wrong and lost readings.
+    /// The best settings of the grid that `cargo lab tune` tries, by the sum of wrong and lost readings.
     pub const TUNED: Self = Self { consecutive: 2, t_delta: Micros::new(200) };
 
     /// The robot with these settings.

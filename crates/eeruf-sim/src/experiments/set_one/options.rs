@@ -14,8 +14,8 @@ use crate::{
     world::Noise,
 };
 
-/// Number of the paper's readings of one set-up (Sec. 4): conventional ones, and those of all other methods in the same
-/// time.
+/// Number of readings that the conventional method takes in the paper's experiment (Sec. 4). All other methods run for
+/// the same time.
 pub const READINGS: u32 = 8000;
 
 /// Arguments of Set I.
@@ -28,8 +28,8 @@ pub struct SetOneOptions {
     /// Duration of each geometry's simulation, as the number of readings that the conventional method takes in it. The
     /// default is [`READINGS`], as in the paper.
     pub readings: u32,
-    /// Number of steps of the back wall, for the figures of how soon they are seen; 0 for none. The default is 22: back
-    /// and forth in each phase of a cycle of 11.
+    /// Number of steps of the back wall, which measure latency; 0 for none. The default is 22: back and forth in each
+    /// phase of a cycle of 11.
     pub steps: u32,
     /// The methods. The default is [`Method::usual`].
     pub methods: Vec<Entry>,
@@ -39,7 +39,7 @@ pub struct SetOneOptions {
     pub physics: Physics,
     /// Floor and ceiling of the alcoves. The default is none: they are flat.
     pub room: Option<Room>,
-    /// Number of sensors the ring has, 1 to 24. The default is 8.
+    /// Number of sensors in the ring, 1 to 24. The default is 8.
     pub sensors: usize,
     /// The period. The default is 60 ms.
     pub period: Micros,

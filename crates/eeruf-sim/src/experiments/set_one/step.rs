@@ -11,16 +11,15 @@ use crate::{
 
 /// Step of the back wall, in metres.
 pub const STEP_M: f64 = 0.25;
-/// Number of periods for which the wall stays: one more than a sensor may take, so that steps come in every phase of a
-/// cycle.
+/// Number of periods for which the wall stays: one more than [`NEVER`], so that steps come in every phase of a cycle.
 const STAYS: u32 = 65;
 /// Number of periods after which a step counts as not seen.
 const NEVER: u32 = 64;
 /// Least change of an echo, in microseconds, for a sensor to be counted.
 const MOVED_US: f64 = 1000.0;
 
-/// For each step and each sensor that it concerns, the period after it in which the first right reading was accepted;
-/// `None` for never.
+/// For each step and each sensor that it concerns, the period after the step in which the first right reading was
+/// accepted; `None` for never.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Steps {
     /// Periods after the steps nearer.
@@ -35,7 +34,7 @@ pub struct Steps {
 /// Time until steps are seen, over all steps and sensors, in periods: 1 is the period of the step.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Latency {
-    /// Number of steps of sensors that were counted.
+    /// Number of steps counted, once for each sensor concerned.
     pub steps: usize,
     /// Number of periods within which half of the steps are seen; `None` if more than half never are.
     pub median: Option<u32>,
@@ -64,13 +63,13 @@ impl Latency {
     }
 }
 
-/// Time until a wall is seen that comes nearer for the first time, so that memory of places does not help: milliseconds
+/// Time until a wall is seen that comes nearer for the first time, when memory of places does not help: milliseconds
 /// from the step to the echo of the first accepted right reading, over all sensors concerned.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct NewStep {
-    /// Number of steps of sensors that were counted.
+    /// Number of steps counted, once for each sensor concerned.
     pub steps: usize,
-    /// Half of the steps are seen within this time; `None` if more than half never are.
+    /// Time within which half of the steps are seen; `None` if more than half never are.
     pub median_ms: Option<f64>,
     /// Time within which nine in ten are seen.
     pub p90_ms: Option<f64>,
@@ -91,7 +90,7 @@ impl NewStep {
     }
 }
 
-/// Steps the scene from the first world, with the wall far away, to the second and back.
+/// Simulates a scene that changes from the first world, with the wall far away, to the second and back.
 pub(super) fn steps(
     worlds: &[World; 2],
     steps: u32,
@@ -112,7 +111,7 @@ pub(super) fn steps(
     Ok(found)
 }
 
-/// One sensor's view of the steps.
+/// Adds one sensor's results of all steps to `found`.
 fn seen(readings: &Readings, sensor: usize, steps: u32, period_s: f64, found: &mut Steps) {
     let of_sensor: Vec<_> = (0..readings.len()).filter(|&n| usize::from(readings.sensor[n]) == sensor).collect();
     for step in 1..=steps {
@@ -120,7 +119,7 @@ fn seen(readings: &Readings, sensor: usize, steps: u32, period_s: f64, found: &m
         let (before, after) = of_sensor.split_at(of_sensor.partition_point(|&n| readings.fired_s[n] < at_s));
         let reference = |n: Option<&usize>| n.map_or(f64::NAN, |&n| readings.reference_us[n]);
         let moved = reference(after.first()) - reference(before.last());
-        // Nor is it counted if the echo comes or goes.
+        // A step does not count either if the echo comes or goes.
         if !(moved.abs() > MOVED_US) {
             continue;
         }

@@ -30,11 +30,11 @@ pub struct SetOne {
     /// The rooms' height and the ring's gain.
     #[serde(flatten)]
     pub conditions: Conditions,
-    /// Number of sensors the ring had.
+    /// Number of sensors in the ring.
     pub sensors: usize,
     /// The period, in microseconds.
     pub period_us: u32,
-    /// Number of periods each was simulated for.
+    /// Number of periods for which each geometry was simulated.
     pub periods: u32,
     /// The methods in the order asked for, with their figures.
     #[serde(serialize_with = "by_name")]
@@ -50,8 +50,8 @@ pub struct SetOne {
 /// The result does not depend on the number of threads.
 ///
 /// # Errors
-/// [`ExperimentError`] for no geometries, more than there are numbers for, no methods or two of one name, for a ring
-/// that cannot be, and if it was stopped.
+/// [`ExperimentError`] for no geometries, more than there are numbers for, no methods or two of one name, for an
+/// invalid ring, and if it was stopped.
 ///
 /// ```
 /// use eeruf_sim::{Entry, Method, experiments::set_one::{SetOneOptions, set_one}};
@@ -81,7 +81,7 @@ pub fn set_one(asked: &SetOneOptions, keep_going: &(dyn Fn(f64) -> bool + Sync))
 }
 
 impl SetOne {
-    /// The table of finished runs: for each method one run for each geometry.
+    /// Makes the table from finished runs: for each method one run for each geometry.
     pub fn of(asked: &SetOneOptions, runs: Vec<Vec<Run>>) -> Self {
         let &SetOneOptions { first, seeds, physics, sensors, period, .. } = asked;
         let methods = named(&asked.methods, runs.iter().map(|runs| Figures::of(runs)));
@@ -99,7 +99,7 @@ fn periods(asked: &SetOneOptions) -> u32 {
 /// An alcove and its robot with a method's settings; the world's seed is the alcove's number.
 ///
 /// # Errors
-/// [`WorldError`] for a ring that cannot be.
+/// [`WorldError`] for an invalid ring.
 pub fn world_of(asked: &SetOneOptions, alcove: &Alcove, entry: &Entry) -> Result<World, WorldError> {
     let SetOneOptions { period, transducer, .. } = *asked;
     let plain = Robot { period, transducer, ..alcove.robot_of(asked.sensors) };

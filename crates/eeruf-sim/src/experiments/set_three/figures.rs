@@ -12,27 +12,27 @@ use crate::{
 pub struct Figures {
     /// Share of the accepted readings that are another robot's sound.
     pub others_of_accepted: Option<Spread>,
-    /// Largest share of another robot's sound in one sensor's accepted readings, among all robots' sensors with at
-    /// least five.
+    /// Largest share of another robot's sound in one sensor's accepted readings, among the sensors of all robots with
+    /// at least five accepted readings.
     pub others_at_worst: Option<Spread>,
-    /// Share of the accepted readings that are foreign sound, including that of the robot's other sensors or of an
+    /// Share of the accepted readings that are foreign sound, including sound from the robot's other sensors or from an
     /// earlier firing.
     pub foreign_of_accepted: Option<Spread>,
     /// Share of the good readings that were not accepted.
     pub good_lost: Option<Spread>,
-    /// Accepted echoes that were right in a second.
+    /// Right echoes accepted per second.
     pub right_echoes_per_s: Option<Spread>,
-    /// Share of the time in which what was last believed is right, as in [`BeliefShares`].
+    /// Share of the time in which the last belief is right, as in [`BeliefShares`].
     pub belief_right: Option<Spread>,
     /// Share of the time in which nothing is believed.
     pub unknown: Option<Spread>,
     /// Share of the time in which foreign sound is believed.
     pub phantom: Option<Spread>,
-    /// Share of the time in which an own later echo is believed.
+    /// Share of the time in which one of the sensor's own later echoes is believed.
     pub too_far: Option<Spread>,
-    /// Share of the time in which an own nearer echo is believed.
+    /// Share of the time in which one of the sensor's own nearer echoes is believed.
     pub faint: Option<Spread>,
-    /// Sensors that were right under 5 % of the times they fired.
+    /// Number of sensors that were right under 5 % of the times they fired.
     pub blind: Option<Spread>,
 }
 
@@ -48,7 +48,7 @@ pub struct Brief {
 /// The result of one placing under one method, with the figures that [`Figures`] spreads.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Run {
-    /// The placing's number, which seeds all that is random.
+    /// The placing's number, which seeds all random values.
     pub seed: u64,
     /// See [`Figures::others_of_accepted`].
     pub others_of_accepted: Option<f64>,
@@ -67,7 +67,7 @@ pub struct Run {
     pub blind: f64,
 }
 
-/// Least number of accepted readings of a sensor that may count as the worst.
+/// Least number of accepted readings for a sensor to count in [`Figures::others_at_worst`].
 const ENOUGH: usize = 5;
 
 impl Run {

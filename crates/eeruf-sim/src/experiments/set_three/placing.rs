@@ -13,13 +13,13 @@ use crate::{
     world::{Clock, Motion, Random, Robot, Sketch},
 };
 
-/// Number of sensors of a ring, evenly around the robot: as many as the paper's table.
+/// Number of sensors of a ring, evenly spaced around the robot: as in the paper's table.
 pub const SENSORS: usize = 12;
-/// The period of the rings: that of the paper's table.
+/// The period of the rings: as in the paper's table.
 pub const PERIOD: Micros = Micros::from_millis(100);
 /// Speed of robots that drive, in m/s: a choice.
 pub const SPEED_M_S: f64 = 0.5;
-/// The largest drift of a robot's clock, in millionths: a choice, that of a cheap quartz.
+/// The largest drift of a robot's clock, in parts per million: a choice, typical of a cheap quartz.
 pub const DRIFT_PPM: f64 = 50.0;
 /// Distance between the middles of robots that stand beside each other.
 const NEAREST_M: f64 = 1.4;
@@ -62,8 +62,8 @@ pub struct Placing {
 }
 
 impl Placing {
-    /// The placing that a number stands for. Thirty consecutive numbers cover each place, arrangement and number of
-    /// robots once.
+    /// Returns the placing of a number. Thirty consecutive numbers cover each combination of place, arrangement and
+    /// number of robots once.
     pub fn random(number: u64) -> Self {
         let place = if number.is_multiple_of(2) { Site::Corridor } else { Site::Hall };
         let arrangement =
@@ -122,7 +122,7 @@ impl Placing {
     }
 }
 
-/// Places on a line, centred on its middle.
+/// Places robots on a line, centred on its middle.
 fn row(count: usize, random: &mut Random) -> Vec<f64> {
     let mut at = 0.0;
     let mut places: Vec<f64> = (0..count)
@@ -138,7 +138,7 @@ fn row(count: usize, random: &mut Random) -> Vec<f64> {
     places
 }
 
-/// Two rows that drive past each other: the first two are 4 m apart.
+/// Places two rows that drive past each other: the first two robots are 4 m apart.
 fn meeting(count: usize, random: &mut Random) -> Vec<(Vector, f64)> {
     const ASIDE_M: f64 = 0.45;
     let mut ahead = [2.0, 2.0];

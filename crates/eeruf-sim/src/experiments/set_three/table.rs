@@ -70,7 +70,7 @@ pub struct SetThree {
     /// The rooms' height and the rings' gain.
     #[serde(flatten)]
     pub conditions: Conditions,
-    /// Periods that each was simulated for.
+    /// Number of periods for which each placing was simulated.
     pub periods: u32,
     /// The methods in the order asked for, with their figures over all placings.
     #[serde(serialize_with = "by_name")]
@@ -148,7 +148,7 @@ pub fn set_three(
 }
 
 impl SetThree {
-    /// The table of finished runs: for each method one run for each placing.
+    /// Makes the table from finished runs: for each method one run for each placing.
     pub fn of(asked: &SetThreeOptions, runs: Vec<Vec<Run>>) -> Self {
         let &SetThreeOptions { first, seeds, periods, physics, .. } = asked;
         let methods = named(&asked.methods, runs.iter().map(|runs| Figures::of(runs)));
@@ -159,7 +159,7 @@ impl SetThree {
     }
 }
 
-/// The placings by place and arrangement, and by the number of robots: for methods of these names the runs of each.
+/// Groups the placings by place and arrangement, and by number of robots; `runs` has a list for each name.
 pub fn group(names: &[&str], runs: &[Vec<Run>]) -> Vec<Group> {
     let placing = |run: &Run| {
         let Placing { place, arrangement, robots, .. } = Placing::random(run.seed);

@@ -1,4 +1,4 @@
-//! A course: a lab with poles about 1.6 m apart (Fig. 6), with a way that a robot can pass.
+//! A course: a lab with poles about 1.6 m apart (Fig. 6), with a way through for a robot.
 
 use eeruf_core::Micros;
 
@@ -13,19 +13,19 @@ use crate::{
 
 /// Length and width of the lab, in metres: a choice, as the paper gives none. The course runs along its length.
 pub const ROOM_M: [f64; 2] = [10.0, 6.0];
-/// The poles are 8 mm thick (Sec. 4).
+/// Radius of the poles in metres: they are 8 mm thick (Sec. 4).
 pub const POLE_RADIUS_M: f64 = 0.004;
 /// Distance between poles of the regular lattice, in metres.
 const SPACING_M: f64 = 1.6;
-/// Largest distance that a pole is moved from its place, along either axis.
+/// Largest distance in metres by which a pole is moved from its place, along either axis.
 const SHAKE_M: f64 = 0.2;
 /// Least distance of two poles, in metres.
 const LEAST_GAP_M: f64 = 1.4;
 /// Radius of a disc for which a free way exists: the platform's corners are 0.53 m from its middle.
 const PASSABLE_M: f64 = 0.6;
-/// Size of the cells for finding that way.
+/// Size of the cells for finding a free way, in metres.
 const CELL_M: f64 = 0.1;
-/// Start of the robot, and the finishing line.
+/// Start of the robot, and the finishing line, in metres.
 const START_M: [f64; 2] = [1.0, 3.0];
 pub(super) const FINISH_X_M: f64 = 8.2;
 /// Target of the steering.
@@ -47,9 +47,9 @@ pub struct Course {
 }
 
 impl Course {
-    /// The course that a number stands for. Poles are drawn, shaken from a lattice of triangles, until no two are
+    /// Returns the course of a number. Poles are drawn around the points of a triangular lattice, until no two are
     /// nearer than 1.4 m and a disc of radius 0.6 m can roll from the start to the finish; a search over cells of 10 cm
-    /// proves that.
+    /// proves it.
     pub fn random(number: u64) -> Self {
         let mut random = Random::new(number).of(2);
         loop {
@@ -60,7 +60,7 @@ impl Course {
         }
     }
 
-    /// The two poles nearest to each other.
+    /// The distance between the two poles nearest to each other.
     fn gap_m(&self) -> f64 {
         let pairs =
             self.poles.iter().enumerate().flat_map(|(k, a)| self.poles[..k].iter().map(move |b| (a - b).norm()));
@@ -72,7 +72,7 @@ impl Course {
         let middle = |cell: usize| Point::new((cell % columns) as f64 + 0.5, (cell / columns) as f64 + 0.5) * CELL_M;
         let free = |cell: usize| {
             let at = middle(cell);
-            // Half a cell's diagonal more, since the disc rolls from middle to middle.
+            // The disc rolls from the middle of a cell to the next, so it needs half a cell's diagonal more.
             let needed = PASSABLE_M + 0.05;
             let [x, y] = [at.x.min(ROOM_M[0] - at.x), at.y.min(ROOM_M[1] - at.y)];
             x >= needed && y >= needed && self.poles.iter().all(|pole| (pole - at).norm() >= needed)
@@ -94,11 +94,11 @@ impl Course {
         false
     }
 
-    /// The lab: its far end and left side are smooth and make the reflective corner, the other two walls are lined with
+    /// The lab: its far end and left side are smooth and form the reflective corner. The other two walls are lined with
     /// furniture and return half of the sound.
     ///
     /// # Errors
-    /// [`WorldError`] if the poles stand where none can.
+    /// [`WorldError`] if the poles do not make a valid scene.
     pub fn scene(&self) -> Result<Scene, WorldError> {
         let [x, y] = ROOM_M;
         let corners = [[0.0, 0.0], [x, 0.0], [x, y], [0.0, y], [0.0, 0.0]];
@@ -126,8 +126,8 @@ impl Course {
         robot
     }
 
-    /// The other robot: 24 sensors all around that fire 24 times in 80 ms, standing at a place, with a clock 40 ppm
-    /// fast and a random start.
+    /// The other robot: a standing ring of 24 sensors all around that fires 24 times in 80 ms, with a clock 40 ppm fast
+    /// and a random start.
     pub fn second_robot(&self, at: Point) -> Robot {
         let mut random = Random::new(self.number).of(3);
         let pose = Pose::new(at.coords, random.between(-3.1, 3.1));
@@ -140,8 +140,8 @@ impl Course {
         }
     }
 
-    /// The lab with its robots. If the first one has a body, so has the other: the disc of its ring. Sound is followed
-    /// for two bounces at walls, or one at a pole: a choice, for speed. Fainter sound over more bounces is left out.
+    /// Returns the lab with its robots. If the first one has a body, the other has the disc of its ring. Sound is
+    /// followed for two bounces at walls, or one at a pole: a choice, for speed, which leaves out fainter sound.
     ///
     /// # Errors
     /// [`WorldError`] if something does not fit.
@@ -154,11 +154,11 @@ impl Course {
     }
 }
 
-/// Largest number of bounces that sound is followed for, at walls alone, and with a pole among them.
+/// Largest number of bounces of sound, at walls alone, and with a pole among them.
 const ORDER: u32 = 2;
 const POLE_ORDER: u32 = 1;
 
-/// A triangular lattice in the middle of the lab, every pole shaken and the whole lattice shifted.
+/// Draws a triangular lattice in the middle of the lab, shifts it as a whole, and moves each pole a little.
 fn shaken(random: &mut Random) -> Vec<Point> {
     let column_m = SPACING_M * 0.75f64.sqrt();
     let aside = random.between(-0.5 * SPACING_M, 0.5 * SPACING_M);
@@ -181,7 +181,7 @@ fn shaken(random: &mut Random) -> Vec<Point> {
 mod tests {
     use super::*;
 
-    // Every random course has room for both robots and poles about 1 6 m apart.
+    // Every random course has room for both robots, and poles about 1.6 m apart.
     #[test]
     fn random_course_has_room_for_both_robots() {
         for number in 0..200 {
@@ -196,7 +196,7 @@ mod tests {
         }
     }
 
-    // A platform with a body has its sensors on its edge as they looked before.
+    // A platform with a body has its sensors on its edge, with unchanged headings.
     #[test]
     fn platform_with_body_has_sensors_on_its_edge() {
         let (course, labmate) = (Course::random(0), LabMate::default());

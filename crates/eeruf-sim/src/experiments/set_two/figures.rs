@@ -28,13 +28,13 @@ pub struct Figures {
     pub wrong_of_all: f64,
     /// Share of all readings that were not accepted.
     pub rejected: f64,
-    /// Echoes entered into the grid where nothing is, on average per course.
+    /// Echoes entered into the grid where there is no object, on average per course.
     pub phantom_echoes: f64,
-    /// Cells of the grid that are certain at the end though nothing is there, on average per course.
+    /// Cells of the grid that are certain at the end although there is no object, on average per course.
     pub phantom_cells: f64,
-    /// Share of the poles that came within 1 m of the robot and that it never saw.
+    /// Share of the poles within 1 m of the robot's way that it never saw.
     pub poles_missed: f64,
-    /// Accepted readings in a second, all sensors together.
+    /// Accepted readings per second, all sensors together.
     pub readings_per_s: f64,
 }
 

@@ -1,7 +1,6 @@
-//! Set II (Sec. 4): a `LabMate` drives through a course of thin poles, steered by what its ring reads: HIMM grid,
-//! vector field histogram, platform, in a closed loop.
-//!
-//! The ring is core's own under the event simulation; only the robot's way is not known beforehand.
+//! Set II (Sec. 4): a `LabMate` drives through a course of thin poles in a closed loop. Its ring's readings fill a HIMM
+//! grid, and a vector field histogram steers the platform by it. The ring is core's own under the event simulation;
+//! only the robot's way is not known beforehand.
 
 mod course;
 mod figures;

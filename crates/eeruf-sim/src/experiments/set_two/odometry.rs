@@ -9,8 +9,8 @@ use crate::{
 /// Distance between the wheels, in metres: a choice.
 const TRACK_M: f64 = 0.34;
 
-/// Errors of the platform's odometry. The expected change of readings stays exact: the default noise would alter it by
-/// some 3 us, a fiftieth of `T_delta`.
+/// Errors of the platform's odometry. They do not affect the expected change of readings: the default noise would alter
+/// it by some 3 us, a fiftieth of `T_delta`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct OdometryNoise {
     /// Root mean square of each wheel's scale error, constant for a course: wheels do not have exactly their assumed
@@ -21,15 +21,15 @@ pub struct OdometryNoise {
 }
 
 impl Default for OdometryNoise {
-    /// A thousandth of the way, and 2 mm after a metre: at the end of a course the estimate is off by about a
-    /// decimetre. A choice, typical of platforms with hard wheels on a smooth floor.
+    /// A thousandth of the way, and 2 mm after a metre (a choice, typical of hard wheels on a smooth floor): at the end
+    /// of a course the estimate is off by about a decimetre.
     fn default() -> Self {
         Self { scale_rms: 0.001, slip_m_rms: 0.002 }
     }
 }
 
 impl OdometryNoise {
-    /// No errors: the robot knows where it is.
+    /// No errors: the robot knows its true place.
     pub const NONE: Self = Self { scale_rms: 0.0, slip_m_rms: 0.0 };
 }
 
@@ -43,7 +43,7 @@ pub(super) struct Odometry {
 }
 
 impl Odometry {
-    /// Odometry at the start, where the robot knows its place. Each course has its noise, whatever the method.
+    /// Makes odometry at the start, where the robot knows its place. The noise depends on the course alone.
     pub(super) fn new(noise: OdometryNoise, start: &Driven, course: u64) -> Self {
         let mut random = Random::new(course).of(4);
         let scales = Normal::shared().pair(random.bits()).map(|normal| noise.scale_rms * f64::from(normal));

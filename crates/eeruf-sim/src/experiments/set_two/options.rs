@@ -21,8 +21,8 @@ use crate::{
 pub struct SetTwoOptions {
     /// Number of courses. The default is 100.
     pub seeds: u64,
-    /// The first course's number. The default is [`FIRST`]: pilots were tuned on courses below 2,000, the shared one on
-    /// 10,000 to 10,999 as well.
+    /// The first course's number. The default is [`FIRST`]: pilots were tuned on courses below 2,000, the shared one
+    /// also on 10,000 to 10,999.
     pub first: u64,
     /// The methods.
     pub methods: Vec<Entry>,
@@ -32,9 +32,9 @@ pub struct SetTwoOptions {
     pub second_robot: Option<Point>,
     /// The platform.
     pub labmate: LabMate,
-    /// True if odometry gives the ring by how much readings should change from the robot's own motion.
+    /// True if odometry gives the ring the change of each reading that the robot's own motion should cause.
     pub odometry: bool,
-    /// `T_delta`. With odometry it need not allow for motion; the smaller it is, the fewer readings agree by accident.
+    /// `T_delta`. With odometry it need not cover motion; the smaller it is, the fewer readings agree by accident.
     pub t_delta: Micros,
     /// Effects in the lab. The default is [`Physics::DEFAULT`].
     pub physics: Physics,
@@ -42,12 +42,12 @@ pub struct SetTwoOptions {
     pub room: Option<Room>,
     /// The gain of the robot's receivers. The default is [`GainProfile::Constant`].
     pub gain: GainProfile,
-    /// True if robots have bodies: the platform a square with the ring on its edge, the other robot the disc of its
-    /// ring, an obstacle to sound and to the platform. The default is without, as for tuning the pilots.
+    /// True if robots have bodies that block sound and the platform: the platform a square with the ring on its edge,
+    /// the other robot the disc of its ring. The default is false, as when the pilots were tuned.
     pub bodies: bool,
     /// Errors of the platform's odometry.
     pub odometry_noise: OdometryNoise,
-    /// Pilots that steer.
+    /// The pilots.
     pub pilots: Pilots,
 }
 

@@ -19,13 +19,13 @@ use crate::{
 
 /// Time step of the platform, in nanoseconds.
 const STEP_NS: u64 = 5_000_000;
-/// Number of steps between two decisions: 30 ms, the time that one took on the paper's computer.
+/// Number of steps between two decisions: 30 ms, the time of one decision on the paper's computer.
 const STEPS_PER_LOOK: u64 = 6;
 /// The width of the grid's cells, in metres, as in the papers.
 const CELL_M: f64 = 0.1;
-/// Distance from every pole and wall beyond which an echo is a phantom: cell and beam are not much narrower.
+/// Distance in metres from every pole and wall beyond which an echo is a phantom, little more than a cell or the beam.
 const PHANTOM_M: f64 = 0.35;
-/// Value from which on a cell counts as an obstacle when phantoms are counted.
+/// Least value of a cell that counts as an obstacle when phantoms are counted.
 const CERTAIN: u8 = 6;
 /// Distance from the platform's middle within which a pole should have been seen.
 const PASSED_M: f64 = 1.0;
@@ -51,7 +51,7 @@ pub(super) struct Pilot<'w> {
 
 impl<'w> Pilot<'w> {
     pub(super) fn new(world: &'w World, course: u64, options: &SetTwoOptions, piloting: Piloting, time_s: f64) -> Self {
-        // One grid for all of the lab; the active window moves over it.
+        // One grid covers the whole lab; the active window moves over it.
         let side = (1.3 * ROOM_M[0] / CELL_M) as usize;
         let mut grid = Himm::new(side, CELL_M);
         grid.move_to(Point::new(0.5 * ROOM_M[0], 0.5 * ROOM_M[1]));
@@ -105,7 +105,7 @@ impl<'w> Pilot<'w> {
         Point::from(self.state.pose.translation.vector)
     }
 
-    /// Returns the direction to steer in, and the speed.
+    /// Decides the direction to steer in, and the speed.
     fn look(&mut self) {
         let Piloting { vfh, turn_gain, .. } = self.piloting;
         let (estimate, turn_most_rad_s) = (self.odometry.pose(), self.labmate.turn_max_rad_s);
@@ -122,7 +122,7 @@ impl<'w> Pilot<'w> {
         self.run.nearest_m = self.run.nearest_m.max(0.0);
     }
 
-    /// Drives one step; `false` when the course is over.
+    /// Drives one step; returns false when the course is over.
     fn step(&mut self) -> bool {
         if self.steps.is_multiple_of(STEPS_PER_LOOK) {
             self.look();
@@ -195,7 +195,7 @@ impl Kinematics for Pilot<'_> {
         }
         self.run.wrong += u32::from(readings.is_wrong(last, DEFAULT_TOLERANCE_US));
         let range_m = readings.t_echo_us[last] * metres_per_us;
-        // A tentative echo is one too: to take it for free space would be to drive into what has just come near.
+        // A tentative echo is an echo too: treating it as free space would drive the robot into a new obstacle.
         if readings.kind[last] == ReadingKind::Clear || range_m > self.piloting.range_m {
             self.grid.clear(estimated_at, estimated_heading, near_m, self.piloting.range_m);
             self.real_grid.clear(at, heading, near_m, self.piloting.range_m);

@@ -9,22 +9,22 @@ use crate::{
     navigation::{Piloting, Vfh},
 };
 
-/// Pilots that steer.
+/// A choice of pilots.
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 #[non_exhaustive]
 pub enum Pilots {
-    /// Each method has its own pilot, found by the same search with the same effort: `cargo lab tune`, on courses below
-    /// 2,000, scored equally alone, behind a second robot and ahead of one. The default.
+    /// Each method has its own pilot, the default. All were found by `cargo lab tune` with the same effort, on courses
+    /// below 2,000, scored equally alone, behind a second robot and ahead of one.
     #[default]
     Own,
-    /// One pilot for all, which an earlier search optimised mainly for `eeruf`. Its figures show how each method does
-    /// with a pilot made for EERUF, not which method is best.
+    /// One pilot for all, which an earlier search optimised mainly for `eeruf`. Its figures show the success of each
+    /// method with a pilot made for EERUF, not which method is best.
     Shared,
-    /// The published vector field histogram, [`Vfh::default`], with echoes entered from up to 2.0 m, for all.
+    /// The published vector field histogram for all, [`Vfh::default`], with echoes entered from up to 2.0 m.
     Published,
     /// The published pilot with the grid's growth rate operator ([`Himm::growth`](crate::Himm::growth)).
     PublishedGro,
-    /// A given pilot, for all.
+    /// A given pilot for all.
     Given(Piloting),
 }
 
@@ -32,7 +32,7 @@ impl Pilots {
     /// The pilots that have names.
     pub const NAMED: [Self; 4] = [Self::Own, Self::Shared, Self::Published, Self::PublishedGro];
 
-    /// Returns the name in the program and in Python; `given` for one that has none.
+    /// Returns the name in the program and in Python; `given` for a given pilot.
     pub const fn as_str(&self) -> &'static str {
         match self {
             Self::Own => "own",
@@ -56,8 +56,8 @@ impl Pilots {
     }
 }
 
-/// The method whose pilot is used: a method that fires like another uses that one's, and one without its own uses that
-/// of one by one.
+/// Returns the method whose pilot is used. A method that fires like another uses that method's pilot; any other method
+/// without its own uses the pilot of one by one.
 pub fn steered_as(method: Method) -> Method {
     match method {
         Method::AdaptiveMultiEcho => Method::MultiEcho,

@@ -53,8 +53,8 @@ pub struct Run {
     pub way_m: f64,
     /// The highest speed, in m/s.
     pub top_speed_m_s: f64,
-    /// Least distance between its outline and a pole, in metres; infinite if it never came near one, which JSON has as
-    /// null.
+    /// Least distance between the robot's outline and a pole, in metres; infinite if the robot never came near one,
+    /// which is null in JSON.
     #[serde(deserialize_with = "infinite")]
     pub nearest_m: f64,
     /// Number of readings of the robot's sensors.
@@ -63,9 +63,9 @@ pub struct Run {
     pub rejected: u32,
     /// Number of readings that were accepted and wrong.
     pub wrong: u32,
-    /// Number of echoes that were entered into the grid where nothing is.
+    /// Number of echoes that were entered into the grid where there is no object.
     pub phantom_echoes: u32,
-    /// Number of cells of the grid that are certain in the end though nothing is there.
+    /// Number of cells of the grid that are certain at the end although there is no object.
     pub phantom_cells: u32,
     /// Number of poles the robot came near.
     pub poles_passed: u32,
@@ -79,13 +79,13 @@ pub struct Run {
     pub grid: Vec<Cell>,
 }
 
-/// A number, or null for an infinite one.
+/// Reads a number, or null as infinity.
 fn infinite<'de, D: Deserializer<'de>>(deserializer: D) -> Result<f64, D::Error> {
     Option::deserialize(deserializer).map(|number| number.unwrap_or(f64::INFINITY))
 }
 
 impl Run {
-    /// A course that has just begun; it times out unless something else happens.
+    /// Returns a course that has just begun; it times out unless something else happens.
     pub(super) fn begun(course: u64) -> Self {
         Self {
             course,

@@ -22,12 +22,12 @@ use crate::{
     world::{Robot, World},
 };
 
-/// Time limit of a course.
+/// Time limit of a course, in seconds.
 const TIME_S: f64 = 40.0;
 
-/// Number of readings that [`Method::MultiEcho`] compares. With many echoes, pairs agree by accident, and more often
-/// with more foreign sound. Three in a row do so far more rarely, and sensors that report several echoes can afford
-/// them.
+/// Number of readings that [`Method::MultiEcho`] compares. With many echoes, pairs agree by accident, and more so the
+/// more foreign sound there is. Three in a row do so far more rarely, and a sensor that reports several echoes has
+/// enough readings for them.
 pub const MULTI_ECHO_CONSECUTIVE: u8 = 3;
 
 /// Set II over many courses.
@@ -46,7 +46,7 @@ pub struct SetTwo {
     pub bodies: bool,
     /// Number of courses.
     pub seeds: u64,
-    /// Position of another robot that fired, in metres.
+    /// Position of another robot that fired, in metres; `None` without one.
     pub second_robot_m: Option<[f64; 2]>,
     /// The platform's highest speed in m/s.
     pub speed_m_s: f64,
@@ -91,7 +91,7 @@ pub fn set_two(options: &SetTwoOptions, keep_going: &(dyn Fn(f64) -> bool + Sync
 }
 
 impl SetTwo {
-    /// The table of finished runs: for each method one run for each course.
+    /// Makes the table from finished runs: for each method one run for each course.
     pub fn of(options: &SetTwoOptions, runs: Vec<Vec<Run>>) -> Self {
         let methods = named(&options.methods, runs.iter().map(|runs| Figures::of(runs)));
         let &SetTwoOptions { first, seeds, second_robot, pilots, physics, bodies, .. } = options;
@@ -102,7 +102,7 @@ impl SetTwo {
     }
 }
 
-/// One course by one method.
+/// Runs one course by one method.
 fn run_course(
     options: &SetTwoOptions,
     entry: &Entry,
@@ -115,7 +115,7 @@ fn run_course(
     Ok(drive(options, entry, number, &|_| progress.go_on())?.run)
 }
 
-/// One course by one method, with all readings.
+/// A drive of one course by one method, with all readings.
 #[derive(Debug)]
 pub struct Drive {
     /// Walls, poles and robots; `run.track` has the way of the first robot.
@@ -130,7 +130,7 @@ pub struct Drive {
 /// if it returns `false`, the drive stops.
 ///
 /// # Errors
-/// [`ExperimentError`] for a ring that cannot be, and if it was stopped.
+/// [`ExperimentError`] for an invalid ring, and if it was stopped.
 pub fn drive(
     options: &SetTwoOptions,
     entry: &Entry,
@@ -155,7 +155,7 @@ pub fn drive(
     };
     let (own, simulation, stop) = (entry.own(&world.robots()[..1])?, entry.options(simulation), Stop::default());
     let readings = match simulation::run(&world, method, &simulation, own, &mut pilot, &stop, keep_going) {
-        // A sensor on the platform's edge, or another robot's body, touched something between two of the pilot's steps.
+        // A sensor on the platform's edge, or another robot's body, touched something between two steps of the pilot.
         Err(SimulationError::Paths { error: PathsError::Inside { .. } | PathsError::Body { .. }, .. })
             if options.bodies =>
         {

@@ -11,15 +11,14 @@ mod tests;
 
 use crate::geometry::{Point, Vector};
 
-/// The highest certainty value, as in the paper on HIMM.
+/// The highest certainty value, as in the HIMM paper.
 pub const MAX_VALUE: u8 = 15;
-/// Gain of the cell at the measured range, as in the paper on HIMM.
+/// Gain of the cell at the measured range, as in the HIMM paper.
 pub const INCREMENT: u8 = 3;
-/// Loss of each cell on the way there, as in the paper on HIMM.
+/// Loss of each cell before the measured range, as in the HIMM paper.
 pub const DECREMENT: u8 = 1;
 
-/// The certainty grid. Cells lie on a lattice fixed in the scene; the grid holds a square of them, which can be moved
-/// along with the robot.
+/// The certainty grid: a square of cells on a lattice fixed in the scene. The square can be moved along with the robot.
 ///
 /// ```
 /// use eeruf_sim::{Himm, Point};
@@ -30,7 +29,7 @@ pub const DECREMENT: u8 = 1;
 /// ```
 #[derive(Clone, Debug, PartialEq)]
 pub struct Himm {
-    /// Values, row by row; a cell's index here is its lattice index modulo `side`, so that moving the window copies
+    /// Values, row by row. The index of a cell is its lattice index modulo `side`, so that moving the window copies
     /// nothing.
     values: Vec<u8>,
     side: i64,
@@ -43,15 +42,15 @@ pub struct Himm {
     /// C' = C + 3 + (sum of the eight neighbours) / 2
     /// ```
     ///
-    /// The paper offers it for fast robots, which see an obstacle only a few times. Off by default.
+    /// The HIMM paper offers it for fast robots, which see an obstacle only a few times. Off by default.
     pub growth: bool,
 }
 
 impl Himm {
-    /// An empty grid of `side` times `side` cells, each `cell_m` metres wide, around the scene's origin. The papers use
-    /// 33 cells of 0.1 m.
+    /// Makes an empty grid of `side` times `side` cells, each `cell_m` metres wide, around the scene's origin. The
+    /// papers use 33 cells of 0.1 m.
     ///
-    /// A side of 0 counts as 1, one above 4096 as 4096, and a width that is not positive as 0.1 m.
+    /// A side of 0 counts as 1, a side above 4096 as 4096, and a width that is not positive as 0.1 m.
     pub fn new(side: usize, cell_m: f64) -> Self {
         let side = side.clamp(1, 4096);
         let cell_m = if cell_m > 0.0 && cell_m.is_finite() { cell_m } else { 0.1 };
@@ -65,23 +64,23 @@ impl Himm {
         self.cell_m
     }
 
-    /// Number of cells the window has on a side.
+    /// Number of cells on a side of the window.
     pub fn side(&self) -> usize {
         self.side as usize
     }
 
-    /// Returns the corner of the window: that of its first cell, with the least x and y.
+    /// Returns the corner of the window with the least x and y.
     pub fn corner(&self) -> Point {
         Point::new(self.first[0] as f64 * self.cell_m, self.first[1] as f64 * self.cell_m)
     }
 
-    /// Moves the window so that `place` is in its middle cell. Cells that leave it are forgotten, those that enter are
-    /// empty.
+    /// Moves the window so that `place` is in its middle cell. Cells that leave the window are forgotten, and cells
+    /// that enter it are empty.
     pub fn move_to(&mut self, place: Point) {
         let first = self.first_around(place);
         for axis in 0..2 {
             let gone = first[axis] - self.first[axis];
-            // Those that leave and those that enter share their memory.
+            // Cells that leave and cells that enter share their memory.
             let (from, to) = if gone >= 0 { (self.first[axis], first[axis]) } else { (first[axis], self.first[axis]) };
             for line in from..to.min(from + self.side) {
                 for across in 0..self.side {
@@ -95,7 +94,7 @@ impl Himm {
     }
 
     /// Enters an echo: an obstacle `range_m` metres from `sensor` in the direction `heading_rad`, and nothing before
-    /// it. Cells within `near_m` metres of the sensor, where it is deaf, are left as they are.
+    /// it. Cells within `near_m` metres of the sensor, where it is deaf, remain unchanged.
     pub fn echo(&mut self, sensor: Point, heading_rad: f64, near_m: f64, range_m: f64) {
         if !(is_number(sensor, heading_rad) && (0.0..1e4).contains(&range_m)) {
             return;
@@ -109,21 +108,21 @@ impl Himm {
         }
     }
 
-    /// Enters that nothing is between `near_m` and `range_m` metres from `sensor` in the direction `heading_rad`.
+    /// Enters free space between `near_m` and `range_m` metres from `sensor` in the direction `heading_rad`.
     pub fn clear(&mut self, sensor: Point, heading_rad: f64, near_m: f64, range_m: f64) {
         if is_number(sensor, heading_rad) {
             self.clear_until(sensor, heading_rad, near_m, range_m, None);
         }
     }
 
-    /// The certainty value of the cell that holds a point; none outside the window.
+    /// The certainty value of the cell that contains a point; `None` outside the window.
     pub fn value(&self, point: Point) -> Option<u8> {
         let cell = self.cell_of(point);
         self.holds(cell).then(|| self.values[self.index(cell)])
     }
 
-    /// The cells that are not empty, with their middles, in a square of `side` cells around a point, or in all of the
-    /// window where that is smaller.
+    /// The cells that are not empty, with their middles, in a square of `side` cells around a point, or in the whole
+    /// window if that is smaller.
     pub fn occupied(&self, around: Point, side: usize) -> impl Iterator<Item = (Point, u8)> + '_ {
         let middle = self.cell_of(around);
         let half = (side.clamp(1, 8192) as i64) / 2;
@@ -142,7 +141,7 @@ impl Himm {
     }
 
     fn cell_of(&self, point: Point) -> [i64; 2] {
-        // A float too large for an index becomes the largest index, which no window holds.
+        // A float too large for an index becomes the largest index, which is outside every window.
         [point.x, point.y].map(|value| ((value / self.cell_m).floor() as i64).clamp(-(1 << 40), 1 << 40))
     }
 
@@ -158,12 +157,12 @@ impl Himm {
     fn neighbours(&self, cell: [i64; 2]) -> u8 {
         let around = (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| [dx, dy])).filter(|step| *step != [0, 0]);
         let cells = around.map(|[dx, dy]| [cell[0] + dx, cell[1] + dy]).filter(|&cell| self.holds(cell));
-        // At most eight times fifteen.
+        // The sum is at most eight times fifteen.
         cells.map(|cell| self.values[self.index(cell)]).sum()
     }
 
-    /// Takes one from each cell that the axis crosses between the two ranges, except from `hit` and the cells behind
-    /// it.
+    /// Subtracts one from each cell that the axis crosses between the two ranges, except from `hit` and the cells
+    /// behind it.
     fn clear_until(&mut self, sensor: Point, heading_rad: f64, near_m: f64, range_m: f64, hit: Option<[i64; 2]>) {
         let near_m = near_m.max(0.0);
         if !(range_m > near_m && range_m < 1e4) {

@@ -34,7 +34,7 @@ fn phantom_is_cleared_by_three_readings_past_it() {
     grid.echo(ORIGIN, 0.0, 0.0, 1.0);
     grid.clear(ORIGIN, 0.0, 0.0, 1.5);
     assert_eq!(grid.value(phantom), Some(2));
-    // Where the sensor is deaf it cannot know.
+    // A reading says nothing about the range in which the sensor is deaf.
     grid.clear(ORIGIN, 0.0, 1.2, 1.5);
     assert_eq!(grid.value(phantom), Some(2));
 }
@@ -64,7 +64,7 @@ fn an_axis_crosses_every_cell_on_its_way_once() {
             (less, more) = (less + u32::from(value == 8), more + u32::from(value == 12));
             assert!(value == 8 || value == 12, "{degrees}");
         }
-        // As many as columns and rows are crossed.
+        // The axis crosses as many cells as columns and rows.
         let expected = 20.0 * (libm::cos(heading).abs() + libm::sin(heading).abs());
         assert!(more == 1 && (f64::from(less) - expected).abs() <= 2.0, "{degrees}: {less}");
     }
@@ -76,7 +76,7 @@ fn the_growth_rate_operator_lets_cells_grow_beside_certain_ones() {
     grid.growth = true;
     grid.echo(ORIGIN, 0.0, 0.0, 1.0);
     assert_eq!(grid.value(Point::new(1.05, 0.05)), Some(3));
-    // Beside it: 3 + 3 / 2.
+    // Beside the certain cell the gain is 3 + 3 / 2.
     grid.echo(Point::new(0.05, 0.15), 0.0, 0.0, 1.0);
     assert_eq!(grid.value(Point::new(1.05, 0.15)), Some(4));
     grid.echo(Point::new(0.05, 0.25), 0.0, 0.0, 1.0);

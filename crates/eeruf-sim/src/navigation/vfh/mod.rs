@@ -1,9 +1,9 @@
 //! The vector field histogram (VFH): from a certainty grid to direction and speed.
 //!
 //! J. Borenstein and Y. Koren, "The vector field histogram - fast obstacle avoidance for mobile robots", IEEE
-//! Transactions on Robotics and Automation 7(3), 1991, pp. 278-288. In two steps: the cells around the robot become a
-//! histogram of obstacle density over 72 sectors of 5 degrees; then, among its valleys, the one nearest the target is
-//! steered for.
+//! Transactions on Robotics and Automation 7(3), 1991, pp. 278-288. The cells around the robot become a histogram of
+//! obstacle density over 72 sectors of 5 degrees. The robot then steers for the valley of the histogram that is nearest
+//! to the target.
 //!
 //! Directions are in the scene's frame, in radians counter-clockwise.
 
@@ -15,7 +15,7 @@ mod tests;
 use super::himm::{Himm, MAX_VALUE};
 use crate::geometry::{Point, Pose, Vector, wrap_angle};
 
-/// Number of sectors the histogram has, as in the paper on VFH.
+/// Number of sectors of the histogram, as in the VFH paper.
 pub const SECTORS: usize = 72;
 /// The width of a sector in radians: 5 degrees.
 pub const SECTOR_RAD: f64 = TAU / SECTORS as f64;
@@ -26,13 +26,13 @@ pub type Histogram = [f64; SECTORS];
 /// The method's parameters.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Vfh {
-    /// Number of cells the active window has on a side. 33 as in the paper.
+    /// Number of cells on a side of the active window, 33 as in the paper.
     pub window: usize,
-    /// `l`: number of sectors to either side over which the histogram is smoothed. 5 as in the paper.
+    /// `l`: number of sectors to either side over which the histogram is smoothed, 5 as in the paper.
     pub smoothing: usize,
-    /// A sector with a lower density is free. Densities are in units of a fully certain cell beside the robot.
+    /// Density below which a sector is free, in units of a fully certain cell beside the robot.
     pub threshold: f64,
-    /// `s_max`: number of sectors above which a valley is wide. 18 as in the paper.
+    /// `s_max`: number of sectors above which a valley is wide, 18 as in the paper.
     pub wide: usize,
     /// `h_m`: the density ahead at which the robot goes no faster than `speed_min_m_s`.
     pub density_max: f64,
@@ -45,7 +45,7 @@ pub struct Vfh {
 }
 
 impl Default for Vfh {
-    /// The paper's window, smoothing and valleys; the density figures suit robots about 0.8 m wide at up to 1 m/s.
+    /// The paper's window, smoothing and valleys. The density figures suit robots about 0.8 m wide at up to 1 m/s.
     fn default() -> Self {
         Self {
             window: 33,
@@ -82,13 +82,13 @@ pub struct Steering {
 }
 
 impl Vfh {
-    /// The polar histogram around a place: the sum of what each cell of the active window contributes,
+    /// Computes the polar histogram around a place: the sum over the cells of the active window of
     ///
     /// ```text
     /// m = c^2 (a - b d)        with a - b d_max = 0
     /// ```
     ///
-    /// with `c` its certainty as a share of the highest, `d` its distance, and `d_max` that of the window's corner.
+    /// with the certainty `c` as a share of the highest, the cell's distance `d`, and the window corner's `d_max`.
     pub fn histogram(&self, grid: &Himm, place: Point) -> Histogram {
         let mut histogram = [0.0; SECTORS];
         let d_max = core::f64::consts::SQRT_2 * 0.5 * self.window.saturating_sub(1) as f64 * grid.cell_m();
@@ -104,7 +104,7 @@ impl Vfh {
         histogram
     }
 
-    /// The smoothed histogram: each density becomes the weighted mean of its neighbours' within `l` sectors,
+    /// Smooths a histogram: each density becomes the weighted mean of the densities within `l` sectors,
     ///
     /// ```text
     /// h'_k = (h_{k-l} + 2 h_{k-l+1} + ... + (l+1) h_k + ... + 2 h_{k+l-1} + h_{k+l}) / (2 l + 1)
@@ -124,13 +124,13 @@ impl Vfh {
         smoothed
     }
 
-    /// The valleys of a smoothed histogram, by their first sectors; none if every direction is blocked.
+    /// Finds the valleys of a smoothed histogram, by their first sectors; none if every direction is blocked.
     pub fn valleys(&self, smoothed: &Histogram) -> Vec<Valley> {
         let free = |k: usize| smoothed[k % SECTORS] < self.threshold;
         let Some(blocked) = (0..SECTORS).find(|&k| !free(k)) else {
             return vec![Valley { first: 0, sectors: SECTORS }];
         };
-        // Once round from a blocked sector, so that no valley is cut in two.
+        // Start behind a blocked sector, so that no valley is cut in two.
         let mut valleys: Vec<Valley> = Vec::new();
         for k in blocked + 1..blocked + SECTORS {
             match valleys.last_mut() {
@@ -146,12 +146,12 @@ impl Vfh {
         valleys
     }
 
-    /// Returns the direction to steer in for a target in the direction `target_rad`: into the valley nearest to it.
-    /// `None` if every direction is blocked.
+    /// Returns the direction to steer in for a target in the direction `target_rad`: into the nearest valley. `None` if
+    /// every direction is blocked.
     ///
-    /// A narrow valley is steered through its middle. Of a wide one only the `s_max` sectors nearest to the target
-    /// count as the valley, so that an obstacle is passed at a distance of half as many sectors, unless the target
-    /// itself lies farther from it.
+    /// The robot steers through the middle of a narrow valley. In a wide valley only the `s_max` sectors nearest to the
+    /// target count, so that the robot passes an obstacle at a distance of half as many sectors, unless the target
+    /// itself is farther from the obstacle.
     pub fn choose(&self, smoothed: &Histogram, target_rad: f64) -> Option<Steering> {
         let valleys = self.valleys(smoothed);
         let target = wrap_angle(target_rad);
@@ -161,7 +161,7 @@ impl Vfh {
         Some(Steering { direction_rad, valley: nearest, trapped })
     }
 
-    /// Runs all steps: returns the direction to steer in from `place` to reach `target`.
+    /// Runs all steps and returns the direction to steer in from `place` to reach `target`.
     ///
     /// ```
     /// use eeruf_sim::{Himm, Point, Vfh};
@@ -173,7 +173,7 @@ impl Vfh {
         self.choose(&self.smoothed(&self.histogram(grid, place)), direction(target - place))
     }
 
-    /// The speed in m/s for the density in the direction of motion and the rate of turn in rad/s:
+    /// Returns the speed in m/s for the density in the direction of motion and the rate of turn in rad/s:
     ///
     /// ```text
     /// V' = V_max (1 - min(h'_c, h_m) / h_m)        V = V' (1 - Omega / Omega_max) + V_min, at most V_max
@@ -185,9 +185,9 @@ impl Vfh {
         (self.speed_max_m_s * calm * straight + self.speed_min_m_s).min(self.speed_max_m_s)
     }
 
-    /// Drives from a pose to a target: the speed ahead in m/s, and the rate of turn in rad/s. A steering error of a
-    /// radian asks for `turn_gain` rad/s, at most `turn_most_rad_s`; the farther the heading is off, the slower it
-    /// goes. If every way is blocked, it stops and turns on the spot. `turn_rad_s` is its present rate of turn.
+    /// Returns the speed ahead in m/s and the rate of turn in rad/s for driving from a pose to a target. The rate is
+    /// `turn_gain` rad/s per radian of steering error, at most `turn_most_rad_s`; the larger the error, the lower the
+    /// speed. A blocked robot stops and turns on the spot. `turn_rad_s` is the present rate of turn.
     ///
     /// ```
     /// use eeruf_sim::{Himm, Point, Pose, Vfh};
@@ -214,7 +214,7 @@ impl Vfh {
         (self.speed(&smoothed, heading, turn_rad_s) * libm::cos(error).max(0.0), turn)
     }
 
-    /// The direction in which a valley is entered.
+    /// The direction in which the robot enters a valley.
     fn through(&self, valley: &Valley, target: f64) -> f64 {
         if valley.sectors == SECTORS {
             return target;
@@ -222,13 +222,13 @@ impl Vfh {
         let half = 0.5 * valley.sectors as f64 * SECTOR_RAD;
         let middle = valley.first as f64 * SECTOR_RAD + half;
         let from_middle = wrap_angle(target - middle);
-        // As far from either border as half of a wide valley, or in the middle of a narrow one.
+        // Stay at least half a wide valley from either border, or in the middle of a narrow valley.
         let slack = (half - 0.5 * self.wide as f64 * SECTOR_RAD).max(0.0);
         wrap_angle(middle + from_middle.clamp(-slack, slack))
     }
 }
 
-/// Angle of a direction outside a valley, in radians; none inside.
+/// Angle of a direction outside a valley, in radians; 0 inside.
 fn off(valley: &Valley, direction_rad: f64) -> f64 {
     let half = 0.5 * valley.sectors as f64 * SECTOR_RAD;
     let middle = valley.first as f64 * SECTOR_RAD + half;
@@ -239,8 +239,8 @@ fn direction(way: Vector) -> f64 {
     libm::atan2(way.y, way.x)
 }
 
-/// The sector that a direction lies in.
+/// Returns the sector that contains a direction.
 pub fn sector_of(direction_rad: f64) -> usize {
-    // Rounding may take a direction just below none to a full turn; a non-number counts as none.
+    // Rounding may turn a direction just below 0 into a full turn; NaN counts as 0.
     (direction_rad.rem_euclid(TAU) / SECTOR_RAD) as usize % SECTORS
 }

@@ -21,7 +21,7 @@ fn walls(lines: &[([f64; 2], [f64; 2])]) -> Himm {
         for i in 0..=cells as u32 {
             let cell = from + (to - from) * (f64::from(i) / cells);
             for _ in 0..5 {
-                // From beside the cell, so that nothing else is touched.
+                // An echo at a range of 0 changes only this cell.
                 grid.echo(cell, 0.0, 0.0, 0.0);
             }
         }
@@ -29,7 +29,7 @@ fn walls(lines: &[([f64; 2], [f64; 2])]) -> Himm {
     grid
 }
 
-/// Drives a point along the steering directions, 5 cm at a time; returns its least distance to a cell, and its places.
+/// Drives a point along the steering directions in steps of 5 cm; returns its least distance to a cell, and its track.
 fn drive(grid: &Himm, from: Point, target: Point) -> (f64, Vec<Point>) {
     let (mut place, mut track, mut nearest) = (from, vec![from], f64::INFINITY);
     while (target - place).norm() > 0.3 && track.len() < 1000 {
@@ -55,7 +55,7 @@ fn obstacle_vector_grows_with_certainty_squared() {
     grid.echo(Point::new(0.05, 0.05), 0.0, 0.0, 1.0);
     let again = VFH.histogram(&grid, Point::new(0.05, 0.0501));
     assert!((again[71] / histogram[71] - 4.0).abs() < 1e-9);
-    // Beyond the window nothing counts.
+    // Cells outside the window do not count.
     assert_eq!(VFH.histogram(&grid, Point::new(-0.75, 0.05)), [0.0; SECTORS]);
 }
 
@@ -84,7 +84,7 @@ fn valleys_are_found_once_each_also_across_the_first_sector() {
 #[test]
 fn of_two_valleys_the_one_nearer_to_the_target_is_chosen() {
     let mut smoothed = [1.0; SECTORS];
-    // Narrow ones to the left and to the right, 6 and 4 sectors from straight ahead.
+    // Narrow valleys lie to the left and to the right, 6 and 4 sectors from straight ahead.
     (6..10).for_each(|k| smoothed[k] = 0.0);
     (64..68).for_each(|k| smoothed[k] = 0.0);
     let right = VFH.choose(&smoothed, 0.0).unwrap();
@@ -94,7 +94,7 @@ fn of_two_valleys_the_one_nearer_to_the_target_is_chosen() {
     assert!((left.direction_rad - 8.0 * SECTOR_RAD).abs() < 1e-12);
 }
 
-// A wide valley is taken nine sectors from its border and a free target directly.
+// The robot enters a wide valley nine sectors from its border, and steers for a free target directly.
 #[test]
 fn wide_valley_is_taken_nine_sectors_from_its_border() {
     let mut smoothed = [0.0; SECTORS];
@@ -111,7 +111,7 @@ fn a_wall_ahead_is_steered_around() {
     let (nearest, track) = drive(&wall, Point::new(0.05, 0.05), Point::new(4.0, 0.0));
     assert!((track[track.len() - 1] - Point::new(4.0, 0.0)).norm() <= 0.3);
     assert!(nearest > 0.3, "{nearest}");
-    // Round the nearer end.
+    // The track goes round the nearer end.
     assert!(track.iter().all(|place| place.y > -0.2));
 }
 

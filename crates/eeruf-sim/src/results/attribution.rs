@@ -1,5 +1,4 @@
-//! Attribution of errors: the wrong readings of a simulation, counted by the sensor that made them, what caused them
-//! and along which path.
+//! Attribution of errors: the wrong readings of a simulation, counted by sensor, cause and path.
 
 use std::collections::HashMap;
 
@@ -18,7 +17,7 @@ pub struct Attribution {
     pub emitter: Option<SensorId>,
     /// Index into [`Readings::paths`], or [`NO_PATH`].
     pub path: u32,
-    /// Number of bounces that path has.
+    /// Number of bounces of the path.
     pub order: Option<u32>,
     /// Number of readings that were wrong this way, believed or not.
     pub wrong: usize,
@@ -27,7 +26,7 @@ pub struct Attribution {
 }
 
 impl Readings {
-    /// The wrong readings by receiver, cause and path, those believed most often first.
+    /// Returns the wrong readings by receiver, cause and path, with the most often believed ones first.
     pub fn attribution(&self, tolerance_us: f64) -> Vec<Attribution> {
         let mut rows: HashMap<(SensorId, Cause, u32), Attribution> = HashMap::new();
         for reading in (0..self.len()).filter(|&reading| self.is_wrong(reading, tolerance_us)) {
@@ -45,8 +44,8 @@ impl Readings {
         rows
     }
 
-    /// The paths along which at least one believed reading was wrong, as indices into [`Readings::paths`], worst first,
-    /// for drawing.
+    /// Returns the paths along which at least one believed reading was wrong, as indices into [`Readings::paths`],
+    /// worst first, for drawing.
     pub fn paths_that_fooled(&self, tolerance_us: f64) -> Vec<u32> {
         let rows = self.attribution(tolerance_us);
         rows.iter().filter(|row| row.accepted > 0 && row.path != NO_PATH).map(|row| row.path).collect()

@@ -1,4 +1,4 @@
-//! [`BeliefShares`]: what a robot believes at any time, which does not depend on how often a method fires.
+//! [`BeliefShares`]: the robot's beliefs over time, which can be compared between methods that fire at different rates.
 
 use std::collections::BTreeMap;
 
@@ -9,10 +9,10 @@ use super::readings::{Cause, Readings, SensorId};
 /// Age, in seconds, beyond which a believed reading no longer counts.
 pub const BELIEF_LASTS_S: f64 = 0.6;
 
-/// Shares of the time of all sensors by what each last believed. They add up to 1.
+/// Shares of the time of all sensors, by the state of each sensor's last belief. They add up to 1.
 ///
-/// A believed reading counts from its firing on for [`BELIEF_LASTS_S`], carried on by odometry, unless another takes
-/// its place. At each firing of the sensor it is compared with what the sensor would read alone there.
+/// A believed reading counts from its firing for [`BELIEF_LASTS_S`], adjusted by odometry, unless another replaces it.
+/// Each firing of the sensor compares it with the reading that the sensor would have there alone.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct BeliefShares {
     /// Share of time that is right within the tolerance: an echo at the reference, or silence where the sensor alone
@@ -21,11 +21,11 @@ pub struct BeliefShares {
     pub right: f64,
     /// Share of time without a belief, or with one that is too old.
     pub unknown: f64,
-    /// Share of time with foreign or stale sound.
+    /// Share of time with a belief in foreign or stale sound.
     pub phantom: f64,
-    /// Share of time with an own echo later than the reference, or silence where the sensor alone hears an echo.
+    /// Share of time with an own echo later than the reference, or with silence where the sensor alone hears an echo.
     pub too_far: f64,
-    /// Share of time with an own echo earlier than the reference, or one where the sensor alone hears none: faint but
+    /// Share of time with an own echo earlier than the reference, or although the sensor alone hears none: faint but
     /// real.
     pub faint: f64,
 }
@@ -39,7 +39,7 @@ struct Believed {
 }
 
 impl Readings {
-    /// The shares with a tolerance in microseconds.
+    /// Computes the shares with a tolerance in microseconds.
     pub fn belief(&self, tolerance_us: f64) -> BeliefShares {
         let mut sensors: BTreeMap<SensorId, Vec<usize>> = BTreeMap::new();
         for reading in 0..self.len() {
@@ -55,7 +55,7 @@ impl Readings {
         BeliefShares { right, unknown: (1.0 - right - phantom - too_far - faint).max(0.0), phantom, too_far, faint }
     }
 
-    /// Adds one sensor's seconds.
+    /// Adds the time of one sensor.
     fn add_sensor(&self, readings: &[usize], tolerance_us: f64, sum: &mut BeliefShares) {
         let mut believed: Option<Believed> = None;
         for (k, &reading) in readings.iter().enumerate() {
@@ -76,7 +76,7 @@ impl Readings {
 }
 
 impl Believed {
-    /// Returns the share of `of` to which the belief counts, with this reference.
+    /// Returns the share in `of` to which the belief counts, with this reference.
     fn state<'b>(&self, reference_us: f64, tolerance_us: f64, of: &'b mut BeliefShares) -> &'b mut f64 {
         let off_us = self.t_echo_us - reference_us;
         if off_us.abs() <= tolerance_us || (self.t_echo_us.is_nan() && reference_us.is_nan()) {
@@ -100,7 +100,7 @@ mod tests {
     use crate::methods::Method;
     use crate::results::NO_PATH;
 
-    /// Readings of one sensor, each by the second of its firing, its kind, echo, reference, cause and expected change.
+    /// Makes readings of one sensor, each from its firing time, kind, echo, reference, cause and expected change.
     fn of(duration_s: f64, rows: &[(f64, ReadingKind, f64, f64, Cause, i32)]) -> Readings {
         let mut readings = Readings::new(Method::Eeruf, duration_s, 1);
         for &(fired_s, kind, t_echo_us, reference_us, cause, change_us) in rows {
@@ -139,7 +139,7 @@ mod tests {
 
     #[test]
     fn each_cause_counts_to_its_share() {
-        // 0.1 s unknown, then 0.1 s of each: right, phantom, too far, faint, and silence where there is an echo.
+        // The states last 0.1 s each: unknown, right, phantom, too far, faint, and silence where there is an echo.
         let found = of(
             0.6,
             &[
@@ -151,13 +151,13 @@ mod tests {
             ],
         );
         close(found.belief(500.0), 1.0 / 6.0, 1.0 / 6.0, 1.0 / 6.0, 2.0 / 6.0, 1.0 / 6.0);
-        // A narrower tolerance makes the first one faint.
+        // A narrower tolerance makes the first belief faint.
         close(found.belief(300.0), 0.0, 1.0 / 6.0, 1.0 / 6.0, 2.0 / 6.0, 2.0 / 6.0);
     }
 
     #[test]
     fn a_belief_ends_after_six_tenths_of_a_second() {
-        // Believed at 0: right until 0.6, although a reading at 0.5 was rejected; unknown until 1.
+        // The reading at 0 is believed: right until 0.6, although a reading at 0.5 was rejected; unknown until 1.
         let found = of(
             1.0,
             &[(0.0, Accepted, 9_000.0, 9_000.0, Cause::Own, 0), (0.5, Rejected, 3_000.0, 9_000.0, Cause::Crosstalk, 0)],
@@ -178,7 +178,7 @@ mod tests {
             )
         };
         close(rows(-600).belief(500.0), 1.0, 0.0, 0.0, 0.0, 0.0);
-        // Left behind, it is too far from 0.1 s on.
+        // Without odometry the belief is too far from 0.1 s on.
         close(rows(0).belief(500.0), 0.25, 0.0, 0.0, 0.75, 0.0);
     }
 

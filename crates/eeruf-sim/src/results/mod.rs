@@ -1,5 +1,5 @@
-//! Results: every reading with its cause, the figures of a method, and which sensor was fooled by which. It uses names
-//! of `methods` and `scene`; `simulation` fills it.
+//! Results: every reading with its cause, the figures of a method, and the sensors that fooled each sensor. It uses
+//! names of `methods` and `scene`; `simulation` fills it.
 
 mod attribution;
 mod belief;

@@ -13,7 +13,7 @@ macro_rules! each_column {
 }
 
 impl Readings {
-    /// The readings at these places, in this order, with the same duration and number of sensors.
+    /// Returns the readings at these places, in this order, with the same duration and number of sensors.
     ///
     /// # Panics
     /// If a place is not below [`len`](Self::len).
@@ -31,8 +31,8 @@ impl Readings {
         some
     }
 
-    /// The readings of consecutive parts as one; durations add up. `None` without parts. Method and number of sensors
-    /// are those of the first.
+    /// Returns the readings of consecutive parts as one; durations add up. `None` without parts. Method and number of
+    /// sensors come from the first part.
     #[must_use]
     pub fn concat(parts: &[&Self]) -> Option<Self> {
         let (first, others) = parts.split_first()?;

@@ -45,13 +45,13 @@ pub struct HeardPath {
     pub receiver: SensorId,
     /// Number of bounces.
     pub order: u32,
-    /// The length in metres; if something moves, when the path was first heard.
+    /// The length in metres; in a moving world, the length when the path was first heard.
     pub length_m: f64,
     /// Direction of departure, in the scene's frame.
     pub departure_rad: f64,
     /// Direction in which the receiver sees the path, in the scene's frame.
     pub arrival_rad: f64,
-    /// The bounces, emitter to receiver. [`Scene::bounce_points`](crate::Scene::bounce_points) says where they are.
+    /// The bounces, emitter to receiver. [`Scene::bounce_points`](crate::Scene::bounce_points) gives their places.
     pub bounces: Box<[Bounce]>,
 }
 
@@ -67,9 +67,9 @@ impl HeardPath {
 pub struct Readings {
     /// The method that was simulated.
     pub method: Method,
-    /// Duration, in seconds of true time; all firings within it have their readings here.
+    /// Duration, in seconds of true time; all firings within it have their readings in the arrays.
     pub duration_s: f64,
-    /// Number of sensors the world has.
+    /// Number of sensors in the world.
     pub sensors: usize,
     /// The robot, from 0.
     pub robot: Vec<u16>,
@@ -85,19 +85,19 @@ pub struct Readings {
     pub x_m: Vec<f64>,
     /// Position of the sensor when it fired, in metres of the scene.
     pub y_m: Vec<f64>,
-    /// The heading then, in radians of the scene, counter-clockwise from the x axis, in (-pi, pi].
+    /// Heading of the sensor when it fired, in radians of the scene, counter-clockwise from the x axis, in (-pi, pi].
     pub heading_rad: Vec<f64>,
     /// Verdict of the method on the reading. Methods that believe everything have only [`ReadingKind::Accepted`] and
     /// [`ReadingKind::Clear`].
     pub kind: Vec<ReadingKind>,
-    /// The echo time that the method gives, in microseconds of the robot's clock: the firing's earliest echo, for
-    /// `multi_echo` the one that repeats, for `median` the median.
+    /// The echo time reported by the method, in microseconds of the robot's clock: the earliest echo of the firing, or
+    /// with `multi_echo` the one that repeats, or with `median` the median.
     pub t_echo_us: Vec<f64>,
     /// The earliest echo of this firing, in microseconds of the robot's clock.
     pub earliest_us: Vec<f64>,
-    /// The reading that the sensor would have alone at this place in quiet air: the first arrival of its own sound that
-    /// is loud enough, between blanking and the end of the window, without fading and jitter. In microseconds of true
-    /// time.
+    /// The reading that the sensor would have alone at this place in quiet air, in microseconds of true time: the first
+    /// sufficiently loud arrival of its own sound between blanking and the end of the window, without fading and
+    /// jitter.
     pub reference_us: Vec<f64>,
     /// Cause of `t_echo_us`.
     pub cause: Vec<Cause>,
@@ -105,21 +105,21 @@ pub struct Readings {
     pub path: Vec<u32>,
     /// Time when the sound behind `t_echo_us` was sent, in seconds of true time.
     pub emitted_s: Vec<f64>,
-    /// The change that odometry expects of a good reading since the sensor's firing before, in microseconds; 0 for a
+    /// The change that odometry expects of a good reading since the sensor's previous firing, in microseconds; 0 for a
     /// robot without odometry.
     pub expected_change_us: Vec<i32>,
-    /// Every path of some reading.
+    /// All paths that readings refer to.
     pub paths: Vec<HeardPath>,
 }
 
 impl Readings {
-    /// Memory of this number of readings, in bytes.
+    /// Returns the memory for this number of readings, in bytes.
     pub const fn bytes_for(readings: u64) -> u64 {
         let whole = size_of::<[f64; 8]>() + size_of::<(u32, u32, i32)>() + size_of::<u16>();
         readings.saturating_mul((whole + size_of::<(u8, u8, ReadingKind, Cause)>()) as u64)
     }
 
-    /// Empty readings.
+    /// Makes empty readings.
     pub(crate) fn new(method: Method, duration_s: f64, sensors: usize) -> Self {
         Self {
             method,
@@ -145,7 +145,7 @@ impl Readings {
         }
     }
 
-    /// Reserves room for this many more, if there is memory.
+    /// Reserves room for this many more readings, if there is memory.
     pub(crate) fn try_reserve(&mut self, more: usize) -> Result<(), TryReserveError> {
         let Self { robot, sensor, period, phase, fired_s, kind, .. } = self;
         robot.try_reserve(more)?;
@@ -170,7 +170,7 @@ impl Readings {
 
     /// Number of further readings that fit.
     pub(crate) fn room(&self) -> usize {
-        // Columns of like elements grow alike, and the widest grow last.
+        // Columns of equal element types grow alike, and the widest grow last.
         self.emitted_s.capacity() - self.emitted_s.len()
     }
 
@@ -237,12 +237,12 @@ impl Readings {
     }
 
     /// Returns true if the reading, if believed, would be wrong: more than `tolerance_us` off the reference, an echo
-    /// where the sensor alone hears none, or none where it hears one.
+    /// although the sensor alone hears none, or no echo although it hears one.
     pub fn is_wrong(&self, reading: usize, tolerance_us: f64) -> bool {
         is_off(self.t_echo_us[reading], self.reference_us[reading], tolerance_us)
     }
 
-    /// Returns true if the firing's earliest echo is right by the same measure, so that a right reading was possible.
+    /// Returns true if the firing's earliest echo is not wrong in the sense of [`is_wrong`](Self::is_wrong).
     pub fn is_good(&self, reading: usize, tolerance_us: f64) -> bool {
         !is_off(self.earliest_us[reading], self.reference_us[reading], tolerance_us)
     }

@@ -1,5 +1,5 @@
-//! Quality of a method: the figures that are always reported together, since each alone is easily improved at the cost
-//! of the others.
+//! Quality of a method: figures that are always reported together, since each alone is easily improved at the cost of
+//! the others.
 
 use serde::{Deserialize, Serialize};
 
@@ -7,15 +7,15 @@ use super::belief::BeliefShares;
 use super::readings::{Cause, Readings};
 use crate::methods::Method;
 
-/// Tolerance of a reading against the reference, unless another is asked for: 0.5 ms, 8.6 cm. Set I's measure of an
-/// error, as large as its `T_delta`.
+/// Default tolerance of a reading against the reference, in us: 0.5 ms, which is 8.6 cm. It is Set I's limit of an
+/// error, and equals its `T_delta`.
 pub const DEFAULT_TOLERANCE_US: f64 = 500.0;
 
 /// A method's figures over one simulation, all robots together. Shares are fractions of 1.
 ///
-/// A reading is what one firing of one sensor gave. It is *accepted* if the method believes it (an echo it accepts, or
-/// that nothing is in range), *wrong* if it differs from the reference by more than the tolerance, or has an echo where
-/// the sensor alone hears none or the reverse, and *good* if the firing's earliest echo was not wrong, believed or not.
+/// A reading is the result of one firing of one sensor. It is *accepted* if the method believes it: an echo or free
+/// space. It is *wrong* if it differs from the reference by more than the tolerance, or has an echo although the sensor
+/// alone hears none, or the reverse. It is *good* if the firing's earliest echo was not wrong, believed or not.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
     /// The method.
@@ -26,41 +26,41 @@ pub struct Summary {
     pub accepted: usize,
     /// Share of all readings that were accepted and wrong: the harmful ones.
     pub wrong_of_all: f64,
-    /// The part of `wrong_of_all` that foreign or stale sound caused. The rest are the sensor's own errors: an echo
-    /// just loud enough that faded once, so that the sensor reads a farther object.
+    /// The part of `wrong_of_all` that foreign or stale sound caused. The rest are the sensor's own errors: a barely
+    /// audible echo fades once, so that the sensor reads a farther object.
     pub crosstalk_of_all: f64,
     /// The part of `wrong_of_all` that was confirmed, not only tentative.
     pub confirmed_wrong_of_all: f64,
     /// Share of the accepted readings that were wrong; `None` if none was accepted.
     pub wrong_of_accepted: Option<f64>,
-    /// Share of all readings that were not accepted: rejected, first of a pair, without echo once.
+    /// Share of all readings that were not accepted: rejected, first of a pair, or a first silence.
     pub rejected: f64,
-    /// Share of the good readings that were not accepted, the false rejections, which are the method's cost; `None` if
-    /// no reading was good.
+    /// Share of the good readings that were not accepted. These false rejections are the method's cost. `None` if no
+    /// reading was good.
     pub good_lost: Option<f64>,
     /// Share of all readings that were not good and would have been wrong without a filter.
     pub wrong_before_filter: f64,
-    /// Shares of the time by what was last believed.
+    /// Shares of the time by the state of the last belief.
     #[serde(flatten)]
     pub belief: BeliefShares,
-    /// Accepted echoes that were right in a second of simulated time, all sensors together.
+    /// Right echoes accepted per second of simulated time, all sensors together.
     pub right_echoes_per_s: f64,
     /// Age of the last accepted reading.
     #[serde(flatten)]
     pub age_ms: Age,
-    /// Accepted readings in a second of simulated time, all sensors together.
+    /// Accepted readings per second of simulated time, all sensors together.
     pub readings_per_s: f64,
-    /// Number of sensors that had fewer than 5 % of their readings accepted.
+    /// Number of sensors with less than 5 % of their readings accepted.
     pub starved: usize,
-    /// Number of sensors that were right under 5 % of the times they fired: the reading was accepted and not wrong.
+    /// Number of sensors with less than 5 % of their readings accepted and not wrong.
     pub blind: usize,
     /// Number of starved sensors that are mostly good in one phase and not in another: foreign sound comes first in
     /// some periods only, but no two consecutive readings agree.
     pub starved_in_part: usize,
 }
 
-/// Age of a sensor's last accepted reading, in milliseconds, whenever it fires: from the firing that the accepted
-/// reading came from (from the start of the simulation before the first) to the present firing. At best one period.
+/// Age of a sensor's last accepted reading at each of its firings, in milliseconds, measured from the firing of the
+/// accepted reading, or before the first one from the start of the simulation. The least age is one period.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Age {
     /// The median.
@@ -72,21 +72,21 @@ pub struct Age {
 }
 
 impl Readings {
-    /// The figures with [`DEFAULT_TOLERANCE_US`].
+    /// Computes the figures with [`DEFAULT_TOLERANCE_US`].
     pub fn summary(&self) -> Summary {
         self.summary_within(DEFAULT_TOLERANCE_US)
     }
 
-    /// The figures with a given tolerance, in microseconds.
+    /// Computes the figures with a given tolerance, in microseconds.
     pub fn summary_within(&self, tolerance_us: f64) -> Summary {
         let (mut accepted, mut wrong, mut crosstalk, mut good, mut false_rejections) = (0, 0, 0, 0, 0);
         let (mut confirmed_wrong, mut right_echoes) = (0, 0);
         let mut ages = Vec::with_capacity(self.len());
-        // Per robot and sensor: when the last accepted reading was fired.
+        // Firing time of the last accepted reading by robot and sensor.
         let mut last =
             vec![[None; eeruf_core::MAX_SENSORS]; self.robot.iter().max().map_or(0, |&r| usize::from(r) + 1)];
-        // And how many of its readings were accepted, how many of those were right, of how many; how many were good in
-        // each phase, of how many.
+        // Numbers of a sensor's accepted readings, of right ones among them, and of all; and in each phase the numbers
+        // of good readings and of all.
         let mut shares = vec![[(0_usize, 0_usize, 0_usize); eeruf_core::MAX_SENSORS]; last.len()];
         let mut phases: Vec<Vec<Phases>> = vec![vec![Phases::new(); eeruf_core::MAX_SENSORS]; last.len()];
         for reading in 0..self.len() {
@@ -143,7 +143,7 @@ impl Readings {
     }
 }
 
-/// For each phase the number of a sensor's good readings, and of all its readings.
+/// Numbers of a sensor's good readings and of all its readings in each phase.
 type Phases = Vec<(usize, usize)>;
 
 fn count(phases: &mut Phases, phase: u8, is_good: bool) {
@@ -161,7 +161,7 @@ fn differ(phases: &Phases) -> bool {
     mostly_good.next().is_some_and(|first| mostly_good.any(|other| other != first))
 }
 
-/// The value that this share of the values does not exceed; 0 without values. Reorders them.
+/// Returns the value that this share of the values does not exceed; 0 without values. Reorders the values.
 pub fn quantile(values: &mut [f64], share: f64) -> f64 {
     if values.is_empty() {
         return 0.0;

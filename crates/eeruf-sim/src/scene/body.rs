@@ -1,4 +1,4 @@
-//! A robot's body: a disc, a box or a convex polygon that reflects and shades the sound of others.
+//! A robot's body: a disc, a box or a convex polygon that reflects and shades the sound of other robots.
 
 use core::fmt;
 
@@ -34,12 +34,12 @@ pub struct Outline {
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum OutlineError {
-    /// Too few or too many.
+    /// The outline has too few or too many corners.
     Corners {
         /// The number given.
         count: usize,
     },
-    /// An invalid corner: the outline does not turn left there, or it is not a number.
+    /// A corner is not a number, or the outline does not turn left there.
     Corner {
         /// The index.
         corner: usize,
@@ -65,7 +65,7 @@ impl Outline {
     /// Checks corners in metres: convex, counter-clockwise, no two in one place.
     ///
     /// # Errors
-    /// The first corner at which it is neither.
+    /// The number of corners if it is out of range, or the first invalid corner.
     ///
     /// ```
     /// use eeruf_sim::Outline;
@@ -83,13 +83,13 @@ impl Outline {
         let mut turned_rad = 0.0;
         for corner in 0..count {
             let (back, on) = (at(corner) - at(corner + count - 1), at(corner + 1) - at(corner));
-            // Written so that what is not a number fails.
+            // The comparison is written so that a NaN fails.
             if !(back.norm() > TOUCH_M && cross(back, on) > 0.0 && on.norm() < f64::INFINITY) {
                 return Err(OutlineError::Corner { corner, at: corners[corner] });
             }
             turned_rad += libm::atan2(cross(back, on), back.dot(&on));
         }
-        // Twice around, as a star is.
+        // The outline turns twice, like a star.
         if turned_rad > 1.5 * core::f64::consts::TAU {
             return Err(OutlineError::Corner { corner: 0, at: corners[0] });
         }
@@ -116,7 +116,7 @@ impl Body {
                 let corners = outline.corners().iter().map(|corner| corner.coords.into()).collect();
                 match ConvexPolygon::from_convex_polyline(corners) {
                     Some(polygon) => call(&polygon),
-                    // No area to speak of.
+                    // The area is negligible.
                     None => call(&Ball::new(TOUCH_M)),
                 }
             }
@@ -133,8 +133,8 @@ impl Body {
         self.overlaps(pose, &Self::Disc(TOUCH_M), &Pose::from(point.coords))
     }
 
-    /// Returns the corners at a pose, clockwise like a pillar's walls, with the first one repeated at the end; none for
-    /// a disc.
+    /// Returns the corners at a pose, clockwise like a pillar's walls, with the first one repeated at the end; empty
+    /// for a disc.
     pub(crate) fn walls_around(&self, pose: &Pose) -> Vec<[f64; 2]> {
         let mut corners: Vec<Point> = match *self {
             Self::Disc(_) => return Vec::new(),
@@ -168,7 +168,7 @@ impl Body {
     }
 }
 
-/// A pose in parry's form.
+/// Converts a pose to parry's form.
 pub(super) fn placed(pose: &Pose) -> ParryPose {
     ParryPose::new(pose.translation.vector.into(), pose.rotation.angle())
 }

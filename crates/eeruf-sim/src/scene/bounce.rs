@@ -9,21 +9,21 @@ pub enum Bounce {
     Pole(u32),
     /// Diffraction at the edge with this index, among [`Scene::edges`](super::Scene::edges).
     Edge(u32),
-    /// A bounce at the floor. Bounces at floor and ceiling are listed after the others, in the order in which the path
-    /// meets them; lengths and heights determine where between the walls that is.
+    /// A bounce at the floor. Bounces at floor and ceiling follow the others in the list, in their order along the
+    /// path; lengths and heights determine their places between the walls.
     Floor,
     /// A bounce at the ceiling.
     Ceiling,
 }
 
-/// The number of the first edge, above all walls, and those of floor and ceiling, above all edges.
+/// The number of the first edge, above all walls, and the numbers of floor and ceiling, above all edges.
 const EDGES: i64 = 1 << 32;
 const FLOOR: i64 = 1 << 33;
 const CEILING: i64 = FLOOR + 1;
 
 impl Bounce {
-    /// Number in files and in Python: a wall's index; -1 minus a pole's; 2^32 plus an edge's; 2^33 for the floor
-    /// and one more for the ceiling.
+    /// Returns the number in files and in Python: a wall's index; -1 minus a pole's; 2^32 plus an edge's; 2^33 for the
+    /// floor and one more for the ceiling.
     ///
     /// ```
     /// use eeruf_sim::Bounce;
@@ -41,7 +41,7 @@ impl Bounce {
         }
     }
 
-    /// The bounce that has a [`number`](Self::number).
+    /// Returns the bounce with this [`number`](Self::number).
     pub fn numbered(number: i64) -> Self {
         match number {
             ..0 => Self::Pole((-1 - number) as u32),
@@ -57,7 +57,7 @@ impl Bounce {
         matches!(self, Self::Floor | Self::Ceiling)
     }
 
-    /// The bounces of a path in the plan: all except those at floor and ceiling, which come last.
+    /// Returns the bounces of a path in the plan: all except those at floor and ceiling, which come last.
     pub fn in_plan(bounces: &[Self]) -> &[Self] {
         let vertical = bounces.iter().rev().take_while(|bounce| bounce.is_vertical()).count();
         &bounces[..bounces.len() - vertical]

@@ -12,7 +12,7 @@ use parry2d_f64::{
 /// An object that a body touches.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Contact {
-    /// The wall with this index. Openings are not touched: a body may pass them.
+    /// The wall with this index. Openings do not count: a body may pass them.
     Wall(usize),
     /// The pole with this index.
     Pole(usize),
@@ -21,7 +21,7 @@ pub enum Contact {
 }
 
 impl Scene {
-    /// The first thing that a body at a pose touches: the wall with the lowest index, else a pole, else a solid region.
+    /// Returns the first object that a body at a pose touches: the wall of lowest index, else a pole, else a solid.
     ///
     /// ```
     /// use eeruf_sim::{Air, Body, Contact, Pole, Pose, Scene, Wall, Vector};
@@ -59,14 +59,14 @@ impl Scene {
         }
     }
 
-    /// A wall as parry's shape.
+    /// Returns a wall as parry's shape.
     pub fn segment(&self, wall: usize) -> Segment {
         let wall = &self.walls()[wall];
         Segment::new(wall.from.coords.into(), wall.to.coords.into())
     }
 
-    /// The nearest wall that a ray meets, with the distance in metres. For drawing and cross-checks: hit points are
-    /// parry's, good to about 1e-7 m at grazing angles, and a ray aimed exactly at a corner may slip through.
+    /// Returns the nearest wall that a ray meets, with the distance in metres. Use it for drawing and cross-checks: hit
+    /// points are good to about 1e-7 m at grazing angles, and a ray aimed exactly at a corner may slip through.
     pub fn cast_ray(&self, from: Point, heading_rad: f64, max_m: f64, skip: Option<usize>) -> Option<(usize, f64)> {
         let (sin, cos) = libm::sincos(heading_rad);
         let ray = Ray::new(from.coords.into(), [cos, sin].into());

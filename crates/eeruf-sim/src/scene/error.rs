@@ -5,7 +5,7 @@ use core::fmt;
 /// The highest ceiling, in metres.
 pub(crate) const MAX_CEILING_M: f64 = 1000.0;
 
-/// Largest number of walls in a scene: a choice of memory.
+/// Largest number of walls in a scene: a choice, to limit memory.
 pub const MAX_WALLS: usize = 10_000_000;
 /// Greatest distance of a coordinate from the origin, in metres: a choice; an `f64` still resolves 1e-11 m there.
 pub const MAX_COORDINATE_M: f64 = 1e5;
@@ -32,7 +32,7 @@ pub enum SceneError {
         /// The length in metres.
         length_m: f64,
     },
-    /// Two walls that share more than a point, or one wall twice.
+    /// Two walls share more than a point, or one wall is given twice.
     WallsOverlap {
         /// Indices of the two walls.
         walls: [usize; 2],
@@ -44,7 +44,7 @@ pub enum SceneError {
         /// Point of crossing, in metres.
         at: [f64; 2],
     },
-    /// More walls than the mesh can number.
+    /// There are more walls than the mesh can number.
     TooManyWalls {
         /// The number given.
         count: usize,
@@ -66,26 +66,26 @@ pub enum SceneError {
         /// Index of the pole.
         pole: usize,
     },
-    /// Two poles with the same axis.
+    /// Two poles have the same axis.
     SamePole {
         /// Indices of the two poles.
         poles: [usize; 2],
     },
-    /// Temperature, humidity or pressure outside the range of the formulas.
+    /// Temperature, humidity or pressure is outside the range of the formulas.
     Air {
         /// The name of the quantity.
         quantity: &'static str,
         /// The offending number.
         value: f64,
-        /// The range that is expected.
+        /// The expected range.
         expected: &'static str,
     },
-    /// A ceiling that is too low or too high.
+    /// The ceiling is too low or too high.
     Ceiling {
         /// The height in metres.
         ceiling_m: f64,
     },
-    /// An invalid material of floor or ceiling.
+    /// The material of floor or ceiling is invalid.
     RoomMaterial {
         /// The surface: floor or ceiling.
         surface: &'static str,

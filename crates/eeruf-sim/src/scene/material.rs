@@ -19,7 +19,7 @@ impl Material {
     /// Perfect reflection, for checks against plain geometry.
     pub const PERFECT: Self = Self::flat(1.0);
 
-    /// A perfectly flat surface.
+    /// Makes a perfectly flat surface.
     pub const fn flat(reflection: f64) -> Self {
         Self { reflection, roughness_m: 0.0 }
     }
@@ -30,8 +30,8 @@ impl Material {
     /// R exp(-2 (k sigma cos theta)^2)
     /// ```
     ///
-    /// `wave_number` is `k = 2 pi f / c` in rad/m and `theta` the angle of incidence. The energy that roughness takes
-    /// out is scattered in all directions and counted as lost.
+    /// `wave_number` is `k = 2 pi f / c` in rad/m and `theta` the angle of incidence. Roughness scatters the remaining
+    /// energy in all directions; it counts as lost.
     ///
     /// ```
     /// use eeruf_sim::Material;
@@ -47,7 +47,7 @@ impl Material {
         self.reflection * libm::exp(-2.0 * phase * phase)
     }
 
-    /// Returns true if both numbers make sense.
+    /// Returns true if both numbers are in range.
     pub(crate) fn is_valid(&self) -> bool {
         (0.0..=1.0).contains(&self.reflection) && self.roughness_m >= 0.0 && self.roughness_m.is_finite()
     }
@@ -63,7 +63,7 @@ impl Default for Material {
 mod tests {
     use super::*;
 
-    // Roughness of a tenth of a millimetre hardly matters and one millimetre silences.
+    // A roughness of 0.1 mm hardly matters, and 1 mm nearly silences the reflection.
     #[test]
     fn roughness_of_one_millimetre_silences() {
         let k = core::f64::consts::TAU * 49_400.0 / 343.2;

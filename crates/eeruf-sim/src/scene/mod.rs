@@ -1,5 +1,5 @@
-//! Objects of a scene: walls, poles and air, checked once, with the mesh and the mirrors that are derived from them. It
-//! uses `geometry` only; robots, noise and seeds wrap around it in `world`.
+//! Objects of a scene: walls, poles and air, checked once, with the mesh and the mirrors derived from them. It uses
+//! only `geometry`; `world` adds robots, noise and seeds.
 
 mod body;
 mod bounce;

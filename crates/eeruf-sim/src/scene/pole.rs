@@ -3,8 +3,8 @@
 use super::material::Material;
 use crate::geometry::Point;
 
-/// An upright cylinder that reflects. Its thickness and [`Physics::shadows`](crate::Physics::shadows) decide if it
-/// shades what lies behind it.
+/// An upright cylinder that reflects. Its radius and [`Physics::shadows`](crate::Physics::shadows) decide if it shades
+/// objects behind it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pole {
     /// The axis.
@@ -16,7 +16,7 @@ pub struct Pole {
 }
 
 impl Pole {
-    /// A perfectly reflecting pole, all in metres.
+    /// Makes a perfectly reflecting pole; all lengths are in metres.
     pub fn new(x: f64, y: f64, radius_m: f64) -> Self {
         Self { centre: Point::new(x, y), radius_m, material: Material::PERFECT }
     }

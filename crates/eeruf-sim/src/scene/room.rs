@@ -3,11 +3,11 @@
 use super::error::{MAX_CEILING_M, SceneError};
 use super::material::Material;
 
-/// The default height of a sensor, in metres: a choice, about that of a small robot's ring.
+/// The default height of a sensor, in metres: a choice, about the height of a small robot's ring.
 pub const DEFAULT_HEIGHT_M: f64 = 0.3;
 
-/// Floor and ceiling. Walls and poles reach from one to the other, so that every path is one of the plan's with bounces
-/// at floor and ceiling in turn.
+/// Floor and ceiling. Walls and poles reach from one to the other, so that every path is a path in the plan with
+/// alternate bounces at floor and ceiling.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
 pub struct Room {
     /// The height of the ceiling above the floor, in metres, above 0 and up to 1000.
@@ -19,7 +19,7 @@ pub struct Room {
 }
 
 impl Room {
-    /// A ceiling at 2.6 m that returns 0.9 above a floor that returns 0.95 (choices).
+    /// A ceiling at 2.6 m with a reflection of 0.9 above a floor with a reflection of 0.95 (choices).
     pub const DEFAULT: Self = Self { ceiling_m: 2.6, floor: Material::SMOOTH, ceiling: Material::PAINTED };
 
     /// Returns true if a height in metres is between floor and ceiling.

@@ -28,7 +28,7 @@ fn check(air: &Air) -> Result<(), SceneError> {
     Ok(())
 }
 
-/// Walls, poles and air, checked and ready for questions.
+/// Walls, poles and air, checked and ready for path searches.
 #[derive(Clone, Debug)]
 pub struct Scene {
     /// Derived data, shared by scenes that differ only in their poles.
@@ -50,11 +50,11 @@ struct Built {
     mirrors: Vec<Mirror>,
     boxes: Bvh,
     edges: Vec<Edge>,
-    /// For each edge, the triangles of which it is a corner; computed on demand.
+    /// For each edge, the triangles that have it as a corner; computed on demand.
     edge_triangles: OnceLock<Vec<Box<[u32]>>>,
     /// Pairs of a triangle and an edge that is its corner, in order; computed on demand.
     triangle_edges: OnceLock<Vec<(u32, u32)>>,
-    /// The edges by place; computed on demand.
+    /// The edges by position; computed on demand.
     edge_boxes: OnceLock<Bvh>,
     /// Extents of walls; computed on demand.
     extents: OnceLock<Extents>,
@@ -67,7 +67,7 @@ impl Scene {
     /// microsecond per wall and is done once per map.
     ///
     /// # Errors
-    /// The first thing found wrong, naming the wall or pole by its index.
+    /// The first error found, naming the wall or pole by its index.
     ///
     /// ```
     /// use eeruf_sim::{Air, Scene, Wall};
@@ -97,7 +97,7 @@ impl Scene {
         none.among(poles)
     }
 
-    /// Appends these poles to its own.
+    /// Appends these poles to the scene's own.
     fn among(mut self, more: Vec<Pole>) -> Self {
         for (index, pole) in (self.poles.len() as u32..).zip(&more) {
             let near = self.built.mesh.near(pole.centre, pole.radius_m * (1.0 + 1e-9));
@@ -108,7 +108,7 @@ impl Scene {
         self
     }
 
-    /// Returns the scene with more poles, with the same mesh, or a new one if a pole lies outside it.
+    /// Returns the scene with more poles. The mesh is shared, or built again if a pole lies outside it.
     pub(crate) fn with_more_poles(&self, more: Vec<Pole>) -> Result<Self, SceneError> {
         let Self { built, air, room, rough, .. } = self;
         if !more.iter().all(|pole| built.mesh.covers(pole.centre)) {
@@ -122,8 +122,8 @@ impl Scene {
         Ok(scene)
     }
 
-    /// Returns the scene between floor and ceiling, or flat without them: all sound in one plane, as
-    /// [`Scene::new`] makes it.
+    /// Returns the scene between floor and ceiling, or without them flat: all sound stays in one plane, as after
+    /// [`Scene::new`].
     ///
     /// # Errors
     /// [`SceneError::Ceiling`] or [`SceneError::RoomMaterial`] for an invalid room.
@@ -132,7 +132,7 @@ impl Scene {
         Ok(Self { room, ..self })
     }
 
-    /// Floor and ceiling; none if the scene is flat.
+    /// Floor and ceiling; `None` if the scene is flat.
     pub fn room(&self) -> Option<&Room> {
         self.room.as_ref()
     }
@@ -147,8 +147,8 @@ impl Scene {
         &self.poles
     }
 
-    /// The free ends of walls and the corners that jut out, which sound bends around if
-    /// [`Physics::edges`](crate::Physics::edges) says so. They include edges of solid regions, seen from within.
+    /// The free ends of walls and the corners that jut out. Sound bends around them with
+    /// [`Physics::edges`](crate::Physics::edges). They include edges of solid regions, seen from within.
     pub fn edges(&self) -> &[Edge] {
         &self.built.edges
     }
@@ -167,7 +167,7 @@ impl Scene {
         &self.built.boxes
     }
 
-    /// The triangles that an edge is a corner of.
+    /// Returns the triangles that have an edge as a corner.
     pub(crate) fn triangles_at(&self, edge: usize) -> &[u32] {
         let built = &*self.built;
         let of_all = built.edge_triangles.get_or_init(|| {
@@ -181,8 +181,8 @@ impl Scene {
         of_all.get(edge).map_or(&[], |triangles| triangles)
     }
 
-    /// Finds the edges that are visible from a point within reach, and some others, in order. The point is given with
-    /// the triangles that contain it.
+    /// Finds the edges that are visible from a point within reach, and some others, in order. `starts` are the
+    /// triangles that contain the point.
     pub(crate) fn edges_seen(&self, from: Point, starts: &[u32], reach_m: f64, seen: &mut Vec<u32>) {
         let pairs = self.built.triangle_edges.get_or_init(|| {
             let corner = |edge: u32| self.triangles_at(edge as usize).iter().map(move |&triangle| (triangle, edge));
@@ -198,7 +198,7 @@ impl Scene {
         seen.dedup();
     }
 
-    /// The places of the edges.
+    /// Returns the edges by position.
     pub(crate) fn edge_boxes(&self) -> &Bvh {
         let Built { edges, edge_boxes, .. } = &*self.built;
         edge_boxes.get_or_init(|| {
@@ -211,7 +211,7 @@ impl Scene {
     pub(crate) fn extents(&self) -> &Extents {
         let Built { walls, boxes, edges, extents, .. } = &*self.built;
         extents.get_or_init(|| {
-            // The same walls were joined when the scene was made.
+            // These walls were joined before, when the scene was made.
             let (vertices, pieces) = join_walls(walls, boxes).unwrap_or_default();
             Extents::new(&vertices, &pieces, walls, edges)
         })
@@ -222,8 +222,8 @@ impl Scene {
         self.air
     }
 
-    /// Returns true if a point lies inside something solid: within a pillar, or outside a closed room. A point in a
-    /// pole is not; see [`contact`](Self::contact).
+    /// Returns true if a point lies inside a solid: within a pillar, or outside a closed room. A point in a pole is not
+    /// solid; see [`contact`](Self::contact).
     pub fn is_solid(&self, point: Point) -> bool {
         self.built.mesh.is_solid(point)
     }
@@ -293,7 +293,7 @@ mod tests {
         let more = first.with_more_poles(poles[1..].to_vec()).unwrap();
         assert_eq!(more.pole_triangles, whole.pole_triangles);
         assert_eq!((more.poles(), more.room(), more.rough), (whole.poles(), whole.room(), true));
-        // Beyond the mesh, which ends a kilometre and more from the walls.
+        // The pole lies beyond the mesh, which ends a kilometre and more from the walls.
         let far = Pole::new(5000.0, 0.0, 0.25);
         assert!(first.with_more_poles(vec![far]).unwrap().mesh().covers(far.centre));
         let same = first.with_more_poles(vec![poles[0]]).unwrap_err().to_string();

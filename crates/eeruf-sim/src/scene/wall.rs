@@ -9,13 +9,13 @@ use crate::geometry::Point;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default, Deserialize, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Faces {
-    /// Reflects on the left of the direction `from` to `to`, where the free space is; the back swallows. A room is a
-    /// loop walked counter-clockwise, a pillar one walked clockwise.
+    /// Reflects on the left of the direction `from` to `to`, where the free space is; the back absorbs. A room is a
+    /// loop walked counter-clockwise, a pillar a loop walked clockwise.
     #[default]
     Left,
     /// A free-standing panel: reflects on both sides.
     Both,
-    /// An opening: nothing comes back from either side.
+    /// An opening: no sound returns from either side.
     Open,
 }
 
@@ -33,7 +33,7 @@ pub struct Wall {
 }
 
 impl Wall {
-    /// A smooth wall with the free space on its left, coordinates in metres.
+    /// Makes a smooth wall with the free space on its left; coordinates are in metres.
     pub fn new(x1: f64, y1: f64, x2: f64, y2: f64) -> Self {
         Self { from: Point::new(x1, y1), to: Point::new(x2, y2), faces: Faces::Left, material: Material::SMOOTH }
     }
@@ -50,7 +50,7 @@ impl Wall {
         Self { material, ..self }
     }
 
-    /// The walls of a polyline in order; the free space is on its left. Repeat the first corner at the end to close it.
+    /// The walls of a polyline in order, with free space on their left. Repeat the first corner at the end to close it.
     ///
     /// ```
     /// use eeruf_sim::Wall;

@@ -1,4 +1,4 @@
-//! Building the mesh: the triangulation, its gates with what lies behind them, and the solid regions.
+//! Building the mesh: the triangulation, its gates with their exits, and the solid regions.
 
 use super::hints::Hints;
 use super::{Exit, Gate, Mesh, NONE, Piece, SWALLOW, WALL};
@@ -10,7 +10,7 @@ use std::collections::HashMap;
 
 impl Mesh {
     /// Builds the mesh from distinct vertices and pieces of walls that do not cross. The mesh extends beyond the walls
-    /// and the `landmarks`, which are not part of it.
+    /// and beyond the `landmarks`, which are not part of it.
     pub(crate) fn build(
         mut vertices: Vec<Point>,
         pieces: &[Piece],
@@ -61,7 +61,7 @@ impl Mesh {
         let mut across = Vec::with_capacity(3 * count);
         for (gate, edge) in sides.iter().enumerate() {
             let (from, to) = (edge.from().fix().index() as u32, edge.to().fix().index() as u32);
-            // The triangle is on the left of its side, so a piece in the same direction shows it the wall's left.
+            // The triangle is on the left of its side, so a piece in the same direction faces it with the wall's left.
             let front = wall_between.get(&(from, to)).copied();
             let wall = front.or_else(|| wall_between.get(&(to, from)).copied());
             let twin = gate_of_edge[edge.rev().fix().index()];
@@ -104,7 +104,7 @@ impl Mesh {
         Ok(mesh)
     }
 
-    /// Regions (triangles joined where no wall or an opening is between them) that touch backs of walls and no front.
+    /// Finds regions (triangles that join without a wall or at an opening) that touch backs of walls and no front.
     fn find_solid(&self, exits: &[Exit], walls: &[Wall]) -> Vec<bool> {
         let mut solid = vec![false; self.len()];
         let mut seen = vec![false; self.len()];
@@ -145,7 +145,7 @@ impl Mesh {
     }
 }
 
-/// Middle and half extent (at least a metre) of a set of points.
+/// Returns the middle and the half extent (at least a metre) of a set of points.
 fn bounds(mut points: impl Iterator<Item = Point>) -> (Point, f64) {
     let Some(first) = points.next() else {
         return (Point::origin(), 1.0);

@@ -14,14 +14,14 @@ const LEAST_TURN_RAD: f64 = 1e-6;
 pub struct Edge {
     /// Position.
     pub at: Point,
-    /// The direction of one face, from the edge along the wall; the open space begins there, counter-clockwise.
+    /// The direction of one face, from the edge along the wall. The open space begins there, counter-clockwise.
     pub face_rad: f64,
-    /// Angle of the open space around the edge: more than half a turn, a whole one at a wall's free end.
+    /// Angle of the open space around the edge: more than half a turn; a full turn at a wall's free end.
     pub outside_rad: f64,
 }
 
 impl Edge {
-    /// The direction of a point, from the face through the open space, in radians; `None` inside the solid.
+    /// Returns the direction of a point, from the face through the open space, in radians; `None` inside the solid.
     pub(crate) fn around(&self, point: Point) -> Option<f64> {
         let out = point - self.at;
         let angle = (libm::atan2(out.y, out.x) - self.face_rad).rem_euclid(TAU);
@@ -29,7 +29,7 @@ impl Edge {
     }
 }
 
-/// All edges of these pieces of wall, with the numbers of their vertices. Openings have none.
+/// Returns all edges of these pieces of wall, with the numbers of their vertices. Openings have none.
 pub(crate) fn edges_of(vertices: &[Point], pieces: &[Piece], walls: &[Wall]) -> Vec<Edge> {
     let mut faces: Vec<Vec<f64>> = vec![Vec::new(); vertices.len()];
     for piece in pieces.iter().filter(|piece| !walls[piece.wall].is_open()) {
@@ -59,12 +59,12 @@ mod tests {
     use crate::*;
     use core::f64::consts::{PI, TAU};
 
-    // Free ends and corners that jut out are edges and nothing else is.
+    // Free ends and corners that jut out are edges, and nothing else is.
     #[test]
     fn free_ends_and_outer_corners_are_edges() {
         let room = [[0.0, 0.0], [4.0, 0.0], [4.0, 2.0], [2.0, 2.0], [2.0, 4.0], [0.0, 4.0], [0.0, 0.0]];
         let mut walls: Vec<_> = Wall::polyline(&room).collect();
-        // A panel that ends on a wall, and one made of two straight pieces.
+        // One panel ends on a wall, and another is made of two straight pieces.
         walls.push(Wall::new(1.0, 0.0, 1.0, 1.0).with_faces(Faces::Both));
         walls.extend(Wall::polyline(&[[3.0, 0.5], [3.0, 1.0], [3.0, 1.5]]).map(|wall| wall.with_faces(Faces::Both)));
         let scene = Scene::new(walls, vec![], Air::default()).unwrap();
@@ -76,7 +76,7 @@ mod tests {
         for edge in expected {
             assert!(found.iter().any(|(at, outside)| *at == edge.0 && (outside - edge.1).abs() < 1e-12), "{edge:?}");
         }
-        // The others are the corners of the room, seen from outside of it.
+        // The other edges are the corners of the room, seen from outside.
         assert!(
             found.iter().all(|(at, _)| room.contains(at) || expected.iter().any(|edge| edge.0 == *at)),
             "{found:?}"

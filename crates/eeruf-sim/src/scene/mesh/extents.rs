@@ -8,8 +8,8 @@ use super::edges::Edge;
 use crate::geometry::{Point, Vector};
 use crate::scene::wall::{Faces, Wall};
 
-/// Angle in radians below which two pieces continue each other: a choice, half a degree. At a decimetre from such a
-/// bend, half a first Fresnel zone at 1 m, an echo is out of step by less than a quarter of a wavelength.
+/// Angle in radians below which two pieces continue each other: a choice, half a degree. A decimetre from such a bend,
+/// half a first Fresnel zone at 1 m, an echo is out of step by less than a quarter of a wavelength.
 const STRAIGHT_RAD: f64 = 0.0087;
 
 /// The left and the right side of a wall, looking from its start to its end.
@@ -17,7 +17,7 @@ const LEFT: usize = 0;
 const RIGHT: usize = 1;
 
 /// The two ends of a surface, first towards its start and then towards its end. `None` if another wall meets it at less
-/// than half a turn: the part beyond the corner exists as an image, and nothing is diffracted.
+/// than half a turn: the image continues beyond the corner, and no sound is diffracted.
 pub(crate) type Ends = [Option<End>; 2];
 
 /// One end of a surface.
@@ -53,9 +53,9 @@ pub(crate) struct Extents {
     stretches: Vec<Stretch>,
     /// Surfaces that end at an edge, each once.
     pub(crate) surfaces: Vec<Surface>,
-    /// For each edge, the index of its first surface in `at_edges`, with one more entry at the end.
+    /// For each edge, the index of its first surface in `at_edges`; one more entry follows at the end.
     starts: Vec<u32>,
-    /// The surfaces that end at each edge, in their order.
+    /// The surfaces that end at each edge, in the order of the edges.
     at_edges: Vec<u32>,
     /// True if any wall's surface ends, on either side.
     ends: Vec<bool>,
@@ -80,10 +80,10 @@ impl Extents {
             extents.stretches.push(Stretch { wall: piece.wall, upto_m, sides });
             let along = (wall.to - wall.from).normalize();
             for side in [LEFT, RIGHT].into_iter().filter(|side| reflects(wall, *side)) {
-                // On the right, everything goes the other way.
+                // On the right side, directions are reversed.
                 let along = if side == LEFT { along } else { -along };
                 let [first, last] = if side == LEFT { [0, 1] } else { [1, 0] };
-                // The piece at one of its ends stands for a surface.
+                // The piece at one end represents the surface.
                 let stands = match found[side][first] {
                     Some(vertex) => vertex == piece.ends[first],
                     None => found[side][last] == Some(piece.ends[last]),
@@ -117,7 +117,7 @@ impl Extents {
         }
     }
 
-    /// The numbers of the surfaces that end at an edge.
+    /// Returns the numbers of the surfaces that end at an edge.
     pub(crate) fn at_edge(&self, edge: usize) -> &[u32] {
         &self.at_edges[self.starts[edge] as usize..self.starts[edge + 1] as usize]
     }
@@ -127,7 +127,7 @@ impl Extents {
         self.ends.get(wall as usize).is_some_and(|ends| *ends)
     }
 
-    /// The ends of the surface around a point of a wall, at this distance from the wall's start, on its left or right.
+    /// Returns the ends of the surface around a point of a wall, at this distance from the wall's start, on one side.
     pub(crate) fn around(&self, wall: u32, from_start_m: f64, on_left: bool) -> Ends {
         let wall = wall as usize;
         let first = self.stretches.partition_point(|stretch| stretch.wall < wall);
@@ -177,14 +177,14 @@ impl<'a> Corners<'a> {
         Self { pieces, walls, arms }
     }
 
-    /// The vertex at which the surface on this side of a piece ends, towards one of the piece's ends.
+    /// Returns the vertex at which the surface on this side of a piece ends, towards one of the piece's ends.
     fn end_of(&self, mut piece: usize, mut side: usize, mut end: usize) -> Option<usize> {
         let mut bent_rad = 0.0;
         for _ in 0..self.pieces.len() {
             let vertex = self.pieces[piece].ends[end];
             let arms = &self.arms[vertex];
             let here = arms.iter().position(|arm| (arm.piece, arm.end) == (piece, end))?;
-            // The open space on the left begins clockwise of the arm at the piece's end, not so at its start.
+            // The open space on the left is clockwise of the arm at the piece's end, counter-clockwise at its start.
             let clockwise = (side == LEFT) == (end == 1);
             let next = arms[(here + if clockwise { arms.len() - 1 } else { 1 }) % arms.len()];
             let turn = arms[here].angle_rad - next.angle_rad;
@@ -250,7 +250,7 @@ mod tests {
         assert_eq!(ends(&walls, 0, 1.0, true), [None, None]);
         assert_eq!(ends(&walls, 2, 1.0, true), [None, corner]);
         assert_eq!(ends(&walls, 3, 1.0, true), [corner, None]);
-        // Next to an opening, and to the back of a wall that swallows, it ends.
+        // The surface ends next to an opening and at the back of a wall, which absorbs sound.
         let mut open = walls.clone();
         open[1].faces = Faces::Open;
         assert_eq!(ends(&open, 0, 1.0, true), [None, Some([4.0, 0.0])]);
@@ -258,7 +258,7 @@ mod tests {
         assert_eq!(ends(&backs, 0, 0.5, true), [Some([0.0, 0.0]), Some([1.0, 0.0])]);
     }
 
-    // A wall on which another ends goes on behind it and has a corner before it.
+    // A wall on which another ends continues behind it, and has a corner in front of it.
     #[test]
     fn wall_behind_a_junction_goes_on() {
         let mut walls = panels(&[[0.0, 0.0], [2.0, 0.0]]);
@@ -287,7 +287,7 @@ mod tests {
         let (sharper, _) = bent(2, 0.012);
         assert_eq!(ends(&sharper, 0, 0.5, true), [Some([0.0, 0.0]), None], "its inner side");
         assert_eq!(ends(&sharper, 0, 0.5, false), [Some([0.0, 0.0]), Some([1.0, 0.0])], "its outer side");
-        // A ring of such bends: no surface goes around it.
+        // No surface goes around a ring of such bends.
         let (ring, _) = bent(785, 0.008);
         assert_eq!(ends(&ring, 100, 0.5, true), [None, None]);
         let on = |end: Option<[f64; 2]>| end.is_some();

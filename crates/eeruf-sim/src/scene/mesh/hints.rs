@@ -1,4 +1,4 @@
-//! Start triangles for locating a point.
+//! Triangles at which the search for a point starts.
 
 use super::NONE;
 use crate::geometry::Point;
@@ -36,7 +36,7 @@ impl Hints {
     }
 
     fn cell(&self, point: Point) -> usize {
-        // The cast saturates, so far points land in the cells of the rim.
+        // The cast saturates, so distant points fall into cells of the rim.
         let index = |offset: f64| ((offset * self.per_m) as usize).min(self.side - 1);
         index(point.y - self.corner[1]) * self.side + index(point.x - self.corner[0])
     }

@@ -1,4 +1,4 @@
-//! Joints of walls: ends that touch become one vertex of the mesh, a wall on which another ends is cut there, and walls
+//! Joints of walls: ends that touch become one vertex of the mesh, a wall is cut where another ends on it, and walls
 //! that cross or overlap are refused.
 
 use super::Piece;
@@ -15,8 +15,7 @@ pub(crate) fn wall_box(wall: &Wall) -> Aabb {
 
 /// Merges end points that touch and cuts walls where others end on them.
 pub(crate) fn join_walls(walls: &[Wall], boxes: &Bvh) -> Result<(Vec<Point>, Vec<Piece>), SceneError> {
-    // Corner 2 i is where wall i starts, 2 i + 1 where it ends; `same` leads from a corner to the first one at its
-    // place.
+    // Corner 2 i is the start of wall i, 2 i + 1 its end; `same` maps a corner to the first corner at its place.
     let corner = |c: usize| {
         if c.is_multiple_of(2) { walls[c / 2].from } else { walls[c / 2].to }
     };
@@ -98,7 +97,7 @@ fn root(same: &mut [usize], mut corner: usize) -> usize {
     corner
 }
 
-/// The way in which two walls meet.
+/// The contact of two walls.
 #[derive(Default)]
 struct Meeting {
     /// For each end of the first wall, the end of the second to which it is joined.

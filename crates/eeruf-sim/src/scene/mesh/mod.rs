@@ -10,7 +10,7 @@ pub(super) mod joints;
 use crate::geometry::{Point, SAME_DIRECTION, Vector, cross};
 use hints::Hints;
 
-/// Marker of an exit that is a reflecting wall; the other bits are the gate by which the reflected beam returns.
+/// Marker of an exit that is a reflecting wall; the other bits are the gate through which the reflected beam returns.
 const WALL: u32 = 1 << 31;
 /// Marker of an exit from which nothing returns: an opening, the back of a wall, the rim of the mesh.
 const SWALLOW: u32 = u32::MAX;
@@ -23,9 +23,9 @@ pub(crate) struct Exit(u32);
 
 /// The meaning of an [`Exit`].
 pub(crate) enum Beyond {
-    /// The next triangle, entered by this gate.
+    /// The next triangle, entered through this gate.
     Gate(u32),
-    /// A wall; the reflected beam enters by this gate.
+    /// A wall; the reflected beam enters through this gate.
     Wall(u32),
     /// No sound returns from here.
     Swallow,
@@ -57,7 +57,7 @@ pub(crate) struct Gate {
     pub(crate) right: Exit,
 }
 
-/// A side of a triangle seen from within: what is behind it, and its two ends.
+/// A side of a triangle seen from within: the exit behind it, and its two ends.
 pub(crate) struct Side {
     pub(crate) exit: Exit,
     pub(crate) left: Point,
@@ -110,12 +110,12 @@ impl Mesh {
 
     /// Returns true if a point can be located: finite and within reach.
     pub(crate) fn covers(&self, point: Point) -> bool {
-        // Written so that a NaN fails.
+        // The comparison is written so that a NaN fails.
         (point.x - self.middle.x).abs() < self.half_m && (point.y - self.middle.y).abs() < self.half_m
     }
 
-    /// Finds all triangles that contain a point: one, two if it lies on a side, a fan if it lies on a corner. The point
-    /// must be [covered](Self::covers).
+    /// Finds all triangles that contain a point: one, or two at a side, or a fan at a corner. The point must be
+    /// [covered](Self::covers).
     pub(crate) fn containing(&self, point: Point, found: &mut Vec<u32>) {
         found.clear();
         found.push(self.locate(point));
@@ -151,8 +151,8 @@ impl Mesh {
     /// Walks from a hint to a triangle that contains the point.
     fn locate(&self, point: Point) -> u32 {
         let mut triangle = self.hints.near(point);
-        // A visibility walk may circle in a mesh that is not Delaunay everywhere; turning the first side tried makes
-        // that rare, and a plain scan ends it for good.
+        // A visibility walk may circle in a mesh that is not Delaunay everywhere. Rotating the first side tried makes
+        // that rare, and a plain scan then ends it.
         for step in 0..64 + self.len().min(4096) {
             let corners = self.corners(triangle);
             let mut moved = false;
@@ -174,7 +174,7 @@ impl Mesh {
         (0..self.len() as u32).find(|&t| self.touches(t, point)).unwrap_or(triangle)
     }
 
-    /// All triangles that a disc overlaps, whatever walls are in between.
+    /// Returns all triangles that a disc overlaps, regardless of walls in between.
     pub(crate) fn near(&self, centre: Point, radius: f64) -> Vec<u32> {
         let mut found = Vec::new();
         self.containing(centre, &mut found);
@@ -195,7 +195,7 @@ impl Mesh {
         found
     }
 
-    /// Returns true if a point lies inside something solid: in a region bounded by backs of walls only.
+    /// Returns true if a point lies inside a solid: in a region bounded by backs of walls only.
     pub(crate) fn is_solid(&self, point: Point) -> bool {
         self.covers(point) && self.solid[self.locate(point) as usize]
     }
@@ -206,10 +206,10 @@ impl Mesh {
         triangles.iter().all(|&triangle| self.solid[triangle as usize])
     }
 
-    /// Visits the triangles within a distance that are visible from a point, some more than once. The point is given
-    /// with the triangles that [contain](Self::containing) it.
+    /// Visits the triangles within a distance that are visible from a point, some more than once. `starts` are the
+    /// triangles that [contain](Self::containing) the point.
     pub(crate) fn visit_seen(&self, from: Point, starts: &[u32], reach_m: f64, mut visit: impl FnMut(u32)) {
-        // Cones between two corners of the scene, behind these sides.
+        // Each entry is a cone between two corners of the scene, behind one side.
         let mut open: Vec<(Exit, Vector, Vector)> = Vec::new();
         for &start in starts {
             visit(start);
@@ -226,7 +226,7 @@ impl Mesh {
             }
             visit(number / 3);
             let ahead = gate.apex - from;
-            // A line right through a corner passes it on the right, as that of `segment_reaches` does.
+            // A line that meets a corner passes it on the right, as in `segment_reaches`.
             let (is_left, is_right) = (cross(right, ahead) >= 0.0, cross(ahead, left) > 0.0);
             if is_left {
                 open.push((gate.right, if is_right { ahead } else { left }, right));
@@ -237,8 +237,8 @@ impl Mesh {
         }
     }
 
-    /// Returns true if no wall crosses the segment between two points, each given with the triangles that
-    /// [contain](Self::containing) it.
+    /// Returns true if no wall crosses the segment between two points. `starts` and `goals` are the triangles that
+    /// [contain](Self::containing) them.
     pub(crate) fn sees(&self, from: Point, starts: &[u32], to: Point, goals: &[u32]) -> bool {
         if starts.iter().any(|triangle| goals.contains(triangle)) {
             return true;

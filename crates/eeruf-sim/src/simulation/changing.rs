@@ -1,4 +1,4 @@
-//! Simulation of worlds that replace each other while rings go on, for a wall that changes its place at one moment.
+//! Simulation of worlds that replace each other while rings run, for a wall that changes its place at one moment.
 
 use std::sync::Arc;
 
@@ -8,12 +8,11 @@ use super::kinematics::Planned;
 use super::options::Options;
 use crate::{methods::Method, results::Readings, threads::Stop, world::World};
 
-/// Simulates worlds in turn, `each` periods of the first robot each, until [`Options::periods`] are over. Only the
-/// scenes may differ, and nothing may move. Sound in flight when the scene changes arrives as it would have in the
-/// scene before.
+/// Simulates worlds in turn, each for `each` periods of the first robot, until [`Options::periods`] are over. Only the
+/// scenes may differ, and nothing may move. Sound in flight when the scene changes arrives as in the scene before.
 ///
 /// # Errors
-/// Those of [`simulate`](super::simulate); with no world, [`SimulationError::Stopped`].
+/// Errors of [`simulate`](super::simulate); [`SimulationError::Stopped`] without a world.
 pub(crate) fn simulate_in_turn(
     worlds: &[World],
     each: u32,

@@ -1,4 +1,4 @@
-//! [`Entry`]: a method with its settings, as simulations and experiments take it.
+//! [`Entry`]: a method with its settings, for simulations and experiments.
 
 use core::fmt;
 use core::str::FromStr;
@@ -17,15 +17,15 @@ use crate::{
 
 /// A factory of the caller's own firing methods and filters, called for each simulation.
 pub trait MakeOwn: fmt::Debug + Send + Sync {
-    /// The firings and filters of these robots, the first of a world.
+    /// Makes the firing methods and filters of these robots, the first of a world.
     ///
     /// # Errors
-    /// Ends the simulation before it begins, with [`SimulationError::Own`].
+    /// An error ends the simulation before it begins, with [`SimulationError::Own`].
     fn make(&self, robots: &[Robot]) -> Result<Own, OwnError>;
 }
 
-/// A method under a name, with its own schedule, settings and code. Simulations and all experiments accept it. Settings
-/// that it does not have come from the robot or the experiment.
+/// A method under a name, with its own schedule, settings and code. Simulations and all experiments accept it. The
+/// robot or the experiment supplies missing settings.
 ///
 /// ```
 /// use eeruf_core::Micros;
@@ -47,12 +47,12 @@ pub struct Entry {
 }
 
 impl Entry {
-    /// A method without changes, under another name.
+    /// Makes an entry of an unchanged method under another name.
     pub fn new(name: &str, method: Method) -> Self {
         Self { name: name.into(), method, flow: None, schedule: None, sketch: None, own: None }
     }
 
-    /// Methods without changes, under their own names.
+    /// Makes entries of unchanged methods under their own names.
     pub fn all(methods: impl IntoIterator<Item = Method>) -> Vec<Self> {
         methods.into_iter().map(Self::from).collect()
     }
@@ -69,7 +69,7 @@ impl Entry {
         Self { flow: Some(flow), ..self }
     }
 
-    /// Sets the robot's own schedule, of as many sensors.
+    /// Sets the robot's own schedule, for as many sensors.
     #[must_use]
     pub fn with_schedule(self, schedule: AnySchedule) -> Self {
         Self { schedule: Some(schedule), ..self }
@@ -87,7 +87,7 @@ impl Entry {
         Self { own: Some(own), ..self }
     }
 
-    /// The name, under which results list it.
+    /// The name of the entry in results.
     pub fn name(&self) -> &str {
         &self.name
     }
@@ -97,7 +97,7 @@ impl Entry {
         self.method
     }
 
-    /// The robot with the entry's changes.
+    /// Returns the robot with the entry's changes.
     #[must_use]
     pub fn robot(&self, mut robot: Robot) -> Robot {
         robot.schedule = self.schedule.or(robot.schedule);
@@ -108,26 +108,26 @@ impl Entry {
         robot
     }
 
-    /// The options with the entry's changes.
+    /// Returns the options with the entry's changes.
     #[must_use]
     pub fn options(&self, options: Options) -> Options {
         Options { flow: self.flow.unwrap_or(options.flow), ..options }
     }
 
-    /// The caller's own firings and filters for these robots, the first of a world.
+    /// Makes the caller's own firing methods and filters for these robots, the first of a world.
     ///
     /// # Errors
-    /// [`SimulationError::Own`] for what [`MakeOwn::make`] refuses.
+    /// [`SimulationError::Own`] with the error of [`MakeOwn::make`].
     pub fn own(&self, robots: &[Robot]) -> Result<Own, SimulationError> {
         let made = self.own.as_ref().map_or_else(|| Ok(Own::new()), |own| own.make(robots));
         made.map_err(|error| SimulationError::Own { robot: 0, what: "method", at_s: 0.0, error })
     }
 
-    /// Simulates a world whose robots are [`robot`](Self::robot)s of this entry. `stop` ends it from another thread; so
-    /// does `keep_going`, which is sometimes called with the passed share of the time, if it returns `false`.
+    /// Simulates a world whose robots are [`robot`](Self::robot)s of this entry. `stop` ends it from another thread. So
+    /// does `keep_going` when it returns `false`; it is sometimes called with the passed share of the time.
     ///
     /// # Errors
-    /// Those of [`simulate`](crate::simulate()), and for what the caller's own code refuses.
+    /// Errors of [`simulate`](crate::simulate()), and of the caller's own code.
     pub fn simulate(
         &self,
         world: &World,
@@ -146,7 +146,7 @@ impl From<Method> for Entry {
     }
 }
 
-/// Equality; own code is equal if it is the same object.
+/// Equality of all parts; own code is equal if it is the same object.
 impl PartialEq for Entry {
     fn eq(&self, other: &Self) -> bool {
         let Self { name, method, flow, schedule, sketch, own } = self;

@@ -9,8 +9,7 @@ use crate::results::Readings;
 use crate::tracing::PathsError;
 use crate::world::WorldError;
 
-/// Reason why a simulation cannot be run. Robots are counted from 0 in code and printed from 1. `{:#}` counts from 0,
-/// `{}` from 1.
+/// Reason why a simulation cannot be run. Robots are counted from 0 in code and with `{:#}`, but from 1 with `{}`.
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum SimulationError {
@@ -39,38 +38,38 @@ pub enum SimulationError {
         /// The violation of the robot's own schedule.
         violation: Violation,
     },
-    /// A robot's schedules make no ladder for [`Method::Adaptive`].
+    /// A robot's schedules do not form a ladder for [`Method::Adaptive`].
     Ladder {
         /// The robot.
         robot: usize,
         /// Reason.
         error: ScheduleError,
     },
-    /// A median of no readings, or of too many.
+    /// The median is of no readings, or of too many.
     Median {
         /// The number asked for.
         median_of: u8,
     },
-    /// Paths could not be found, most often because a robot has moved out of the scene's reach.
+    /// Paths could not be found, usually because a robot has moved out of the scene's reach.
     Paths {
         /// Time, in seconds.
         at_s: f64,
         /// Reason.
         error: PathsError,
     },
-    /// There is not enough memory for as many readings.
+    /// There is not enough memory for this many readings.
     Memory {
         /// Number of readings.
         readings: u64,
     },
-    /// A robot out of range.
+    /// The robot's number is out of range.
     Robot {
         /// The robot.
         robot: usize,
         /// Number of robots in the world.
         robots: usize,
     },
-    /// An invalid number.
+    /// A number is invalid.
     Number {
         /// The name of the number.
         what: &'static str,
@@ -79,7 +78,7 @@ pub enum SimulationError {
         /// The expected range.
         expected: &'static str,
     },
-    /// The caller's own firing or filter has ended it.
+    /// The caller's own firing method or filter has ended the simulation.
     Own {
         /// The robot.
         robot: usize,
@@ -97,16 +96,16 @@ pub enum SimulationError {
         /// The method.
         method: Method,
     },
-    /// A schedule for another number of sensors than the robot has.
+    /// The schedule is for another number of sensors than the robot has.
     Sensors {
         /// The robot.
         robot: usize,
-        /// Number of sensors that the schedule is for.
+        /// Number of sensors of the schedule.
         schedule: usize,
         /// Number of sensors of the robot.
         sensors: usize,
     },
-    /// A fault has no room in the scene at a time.
+    /// The object of a fault has no room in the scene at a time.
     Fault {
         /// Time, in seconds.
         at_s: f64,

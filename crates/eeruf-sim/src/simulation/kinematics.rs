@@ -2,23 +2,23 @@
 
 use crate::{geometry::Moment, methods::Method, results::Readings, world::World};
 
-/// Source of the robots' places, which also receives their rings' readings. Time never goes back from call to call.
+/// Source of the robots' poses, which also receives their rings' readings. Time never decreases from call to call.
 pub(crate) trait Kinematics {
     /// Returns true if anything ever moves.
     fn moves(&self) -> bool;
 
-    /// Motion of a robot now, in true nanoseconds.
+    /// Returns the motion of a robot at a time, in true nanoseconds.
     fn moment(&self, robot: usize, now: u64) -> Moment;
 
-    /// Advances the time to `now`, in true nanoseconds. If it returns `false`, the simulation ends.
+    /// Advances the time to `now`, in true nanoseconds. Returns false to end the simulation.
     fn advance(&mut self, _now: u64) -> bool {
         true
     }
 
-    /// Reports a reading, the last of `readings`, of a firing at `fired`.
+    /// Reports a reading: the last of `readings`, from a firing at `fired`.
     fn on_reading(&mut self, _readings: &Readings, _fired: &Moment) {}
 
-    /// The method by which a robot's ring fires.
+    /// Returns the method by which a robot's ring fires.
     fn method(&self, _robot: usize, asked: Method) -> Method {
         asked
     }
@@ -55,7 +55,7 @@ impl<K: Kinematics> Kinematics for &mut K {
     }
 }
 
-/// Motions as the world describes them.
+/// Motions that the world describes.
 pub(crate) struct Planned<'w>(pub(crate) &'w World);
 
 impl Kinematics for Planned<'_> {

@@ -1,7 +1,7 @@
 //! [`LockStep`]: the world around a ring that runs elsewhere, on a real or an emulated microcontroller.
 //!
-//! The normal simulation calls the ring. Here the ring calls: it reports each firing, and learns what every sensor will
-//! hear next, as far as is known. A later firing may still change that, if its sound arrives first.
+//! In a normal simulation, the simulator calls the ring. Here the ring calls the simulator: it reports each firing, and
+//! receives the next echo of every sensor as known so far. A later firing may change it, if its sound arrives first.
 
 use std::sync::Arc;
 
@@ -15,7 +15,7 @@ use crate::{
     world::{Random, World},
 };
 
-/// The first robot of a world, fired from outside. Sensors report one echo.
+/// The first robot of a world, fired from outside. Its sensors report one echo.
 pub struct LockStep<'w> {
     world: &'w World,
     channels: Channels,
@@ -26,7 +26,7 @@ pub struct LockStep<'w> {
 }
 
 impl<'w> LockStep<'w> {
-    /// A world in which nothing has fired yet. The robot's `blanking` and `window` limit when its sensors hear.
+    /// Makes a world in which nothing has fired yet. The robot's `blanking` and `window` limit when its sensors hear.
     ///
     /// # Errors
     /// See [`simulate`](crate::simulate()).
@@ -38,16 +38,16 @@ impl<'w> LockStep<'w> {
         let hearing_of = |sensor| Hearing::new(world, robot, sensor, 1, ns(robot.window), ns);
         let hearings = (0..robot.sensors.len()).map(hearing_of).collect();
         let receivers = vec![Receiver::NEW; robot.sensors.len()];
-        // The same random numbers as in a simulation.
+        // These are the random numbers of a simulation.
         let propagation = Propagation::new(world, Random::new(world.seed()));
         Ok(Self { world, channels, hearings, receivers, propagation })
     }
 
-    /// Fires a sensor, which then listens, at this time in nanoseconds: not before the last call's time, and not within
-    /// its window.
+    /// Fires a sensor, which then listens, at this time in nanoseconds: no earlier than the last call's time, and not
+    /// within the sensor's window.
     ///
     /// # Errors
-    /// Those of [`simulate`](crate::simulate()), for robots that move.
+    /// Errors of [`simulate`](crate::simulate()) for robots that move.
     pub fn fire(&mut self, sensor: usize, at_ns: u64) -> Result<(), PathsError> {
         let Some(receiver) = self.receivers.get_mut(sensor) else { return Ok(()) };
         self.channels.prepare(sensor, at_ns, &Planned(self.world), None)?;
@@ -62,8 +62,8 @@ impl<'w> LockStep<'w> {
         Ok(())
     }
 
-    /// Returns the time in nanoseconds of the sensor's next echo since it last fired, as far as is known; `None` for
-    /// none.
+    /// Returns the time in nanoseconds of the sensor's next echo after its last firing, as known so far; `None` without
+    /// one.
     pub fn hears_at_ns(&self, sensor: usize) -> Option<u64> {
         self.receivers.get(sensor).map(Receiver::next_at).filter(|&at| at != NEVER)
     }
@@ -75,7 +75,7 @@ mod tests {
     use crate::*;
     use eeruf_core::Phase;
 
-    // A ring fired from outside hears to the microsecond what it hears in a simulation.
+    // A ring fired from outside hears the echoes of a simulation, to the microsecond.
     #[test]
     fn ring_fired_from_outside_hears_as_in_simulation() {
         const PERIODS: usize = 20;
@@ -105,7 +105,7 @@ mod tests {
             }
         };
         for (at, sensor, period) in firings {
-            // What it heard since its last firing cannot change any more.
+            // The echo since its last firing is final now.
             note(fired[sensor], sensor, outside.hears_at_ns(sensor));
             outside.fire(sensor, at).unwrap();
             fired[sensor] = Some((at, period));

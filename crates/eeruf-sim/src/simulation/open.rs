@@ -21,7 +21,7 @@ use crate::{
 const MAX_STEP_S: f64 = 1e9;
 
 /// A simulation that runs step by step. All steps together give the readings of [`simulate`](crate::simulate()), bit
-/// for bit, in the memory of one step's readings.
+/// for bit, but need memory only for the readings of one step.
 ///
 /// ```
 /// use std::sync::Arc;
@@ -48,9 +48,9 @@ pub struct Simulation {
     now: u64,
     /// Time before which all events have happened.
     happened: u64,
-    /// The world with its present scene, and the time since when.
+    /// The world with its present scene, and the time of the last change.
     place: (Arc<World>, u64),
-    /// End of the time whose firings are reported.
+    /// End of the time for which firings are reported.
     end: u64,
     /// The first robot's period.
     period: u64,
@@ -58,8 +58,8 @@ pub struct Simulation {
 }
 
 impl Simulation {
-    /// A simulation in which nothing has fired yet; the option `periods` is ignored. `stop` ends a running step from
-    /// another thread.
+    /// Opens a simulation in which nothing has fired yet; the option `periods` is ignored. `stop` ends a running step
+    /// from another thread.
     ///
     /// # Errors
     /// See [`simulate`](crate::simulate()).
@@ -71,7 +71,7 @@ impl Simulation {
     /// For a robot with its own firing but no filter, the method's judge is used.
     ///
     /// # Errors
-    /// Those of [`simulate`](crate::simulate()); a part for no robot, or a first period that cannot be fired.
+    /// Errors of [`simulate`](crate::simulate()), a part for a robot that does not exist, or an invalid first period.
     pub fn with_own(
         world: Arc<World>,
         method: Method,
@@ -116,9 +116,9 @@ impl Simulation {
         Ok(Self { world, events, method, robots, now: 0, happened: 0, place, end, period, over: false })
     }
 
-    /// A copy in the same state: with the same steps it gives the same readings, bit for bit. It has its own switch,
-    /// `stop`. `None` if a [`FiringMethod`](crate::FiringMethod) or a [`Filter`](crate::Filter) of the caller's own
-    /// cannot be copied.
+    /// Returns a copy in the same state: with the same steps it gives the same readings, bit for bit. The copy has its
+    /// own switch, `stop`. `None` if the caller's own [`FiringMethod`](crate::FiringMethod) or
+    /// [`Filter`](crate::Filter) cannot be copied.
     ///
     /// ```
     /// use std::sync::Arc;
@@ -138,9 +138,9 @@ impl Simulation {
         Some(Self { world, events: self.events.copy(stop)?, place, ..*self })
     }
 
-    /// Advances the time, and returns the readings of all firings whose windows have closed meanwhile. `keep_going` is
+    /// Advances the time, and returns the readings of all firings whose windows have closed since. `keep_going` is
     /// sometimes called with the passed share; if it returns `false`, the step ends with [`SimulationError::Stopped`]
-    /// and may be taken again.
+    /// and may be repeated.
     ///
     /// # Errors
     /// A time that is negative or above 10^9 s, a robot that has moved out of the scene's reach, or too little memory.
@@ -155,8 +155,8 @@ impl Simulation {
         Ok((seconds * 1e9).round() as u64)
     }
 
-    /// Advances like [`step`](Self::step), but at most to the next reading: returns it, or nothing after this many
-    /// seconds. Readings of one moment come together.
+    /// Advances like [`step`](Self::step), but at most to the next reading. Returns all readings of that moment, or
+    /// none after this many seconds.
     ///
     /// # Errors
     /// See [`step`](Self::step).
@@ -191,7 +191,7 @@ impl Simulation {
         Ok(readings)
     }
 
-    /// Like [`step`](Self::step), for this many periods of the first robot.
+    /// Advances like [`step`](Self::step) by this many periods of the first robot.
     ///
     /// # Errors
     /// See [`step`](Self::step).
@@ -205,7 +205,7 @@ impl Simulation {
 
     fn go_on(&mut self, ns: u64, keep_going: impl FnMut(f64) -> bool) -> Result<Readings, SimulationError> {
         let (before, now) = (self.now.min(self.end), self.now.saturating_add(ns));
-        // What was fired before the end is still heard after it.
+        // Sound of firings before the end is still heard after it.
         let until = if now >= self.end { u64::MAX } else { now };
         let duration_s = (now.min(self.end) - before) as f64 * 1e-9;
         let more = self.events.run_until(until, keep_going)?;
@@ -219,16 +219,16 @@ impl Simulation {
         self.over
     }
 
-    /// The time that has passed, in seconds.
+    /// Returns the simulated time that has passed, in seconds.
     pub fn time_s(&self) -> f64 {
         self.now as f64 * 1e-9
     }
 
-    /// Sets a robot's forward speed, `v_m_s`, and rate of turn, `w_rad_s`, counter-clockwise, from now on; it overrides
-    /// the world's motion.
+    /// Sets a robot's forward speed, `v_m_s`, and rate of turn, `w_rad_s`, counter-clockwise, from now on. This
+    /// overrides the motion given in the world.
     ///
     /// # Errors
-    /// No such robot, or more than 50 m/s or rad/s.
+    /// The robot does not exist, or the value is above 50 m/s or rad/s.
     pub fn set_velocity(&mut self, robot: usize, v_m_s: f64, w_rad_s: f64) -> Result<(), SimulationError> {
         self.known(robot)?;
         for (what, value) in [("v_m_s", v_m_s), ("w_rad_s", w_rad_s)] {
@@ -241,11 +241,11 @@ impl Simulation {
         Ok(())
     }
 
-    /// Moves a robot to another place at once; it keeps the speeds set last, or stands. Readings before and after are
-    /// compared as if odometry had followed the jump. Free space is not checked.
+    /// Moves a robot to another place at once. The robot keeps the speeds set last, or stands. Readings before and
+    /// after are compared as if odometry had followed the jump. Free space is not checked.
     ///
     /// # Errors
-    /// No such robot, or a pose beyond 10^6 m.
+    /// The robot does not exist, or the pose is beyond 10^6 m.
     pub fn set_pose(&mut self, robot: usize, pose: Pose) -> Result<(), SimulationError> {
         self.known(robot)?;
         let place = pose.translation.vector;
@@ -262,10 +262,9 @@ impl Simulation {
     /// Changes a robot's schedule at the end of its present period, late enough to keep the intervals of both. Readings
     /// before and after the change are not compared.
     ///
-    /// # Errors
-    /// No such robot; a method without such a schedule (immediate refiring, dither, flow, adaptive, the caller's own
-    /// firing); a schedule for another number of sensors, or by which a sensor would fire again while it listens. The
-    /// ring then goes on as before.
+    /// The robot does not exist; the method has no such schedule (immediate refiring, dither, flow, adaptive, the
+    /// caller's own firing); or the schedule is for another number of sensors, or would fire a sensor again while it
+    /// listens. The ring then continues as before.
     ///
     /// ```
     /// use std::sync::Arc;
@@ -292,12 +291,12 @@ impl Simulation {
         changed.map_err(|error| SimulationError::change(robot, method, error))
     }
 
-    /// Changes walls, poles and air from now on, for obstacles that move. Sound in flight arrives as it would have
-    /// before. Free space around robots is not checked.
+    /// Changes walls, poles and air from now on, for obstacles that move. Sound in flight arrives as in the old scene.
+    /// Free space around robots is not checked.
     ///
     /// # Errors
-    /// [`SimulationError::Paths`] if a sensor is within something solid or out of the scene's reach. Nothing changes
-    /// then; for a robot that moves, the error comes at its next firing.
+    /// [`SimulationError::Paths`] if a sensor is inside a solid or out of the scene's reach. The scene then does not
+    /// change; for a robot that moves, the error comes at its next firing.
     ///
     /// ```
     /// use std::sync::Arc;
@@ -320,8 +319,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// Shares the paths of the present scene, until it changes, with simulations of robots that move alike in it and
-    /// differ in how they fire and listen alone.
+    /// Shares the paths of the present scene, until it changes, with simulations in which robots move alike and differ
+    /// only in their firing and listening.
     pub(crate) fn share(&mut self, shared: Arc<SharedPaths>) {
         self.events.share(shared);
     }
@@ -329,17 +328,17 @@ impl Simulation {
     /// Returns the pose and speed of a robot now.
     ///
     /// # Errors
-    /// No such robot.
+    /// The robot does not exist.
     pub fn moment(&self, robot: usize) -> Result<Moment, SimulationError> {
         self.known(robot)?;
         Ok(self.events.kinematics().moment(robot, self.now))
     }
 
-    /// Returns the pose and speed of a robot at a time up to now: at most ten seconds before it was last steered, or
-    /// any time if it never was.
+    /// Returns the pose and speed of a robot at a time up to now: at most ten seconds before its last steering, or any
+    /// time if it was never steered.
     ///
     /// # Errors
-    /// No such robot, or another time.
+    /// The robot does not exist, or the time is outside that range.
     ///
     /// ```
     /// use std::sync::Arc;
@@ -366,12 +365,12 @@ impl Simulation {
         Ok(self.events.kinematics().moment(robot, then as u64))
     }
 
-    /// The world that is simulated, as it was at first.
+    /// The simulated world, in its state at the beginning.
     pub fn world(&self) -> &Arc<World> {
         &self.world
     }
 
-    /// The world with its present scene, and the time in seconds since when firings have used it; see
+    /// The world with its present scene, and the time in seconds since which firings have used it; see
     /// [`change_scene`](Self::change_scene).
     pub fn world_now(&self) -> (&Arc<World>, f64) {
         (&self.place.0, self.place.1 as f64 * 1e-9)

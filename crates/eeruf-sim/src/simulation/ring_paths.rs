@@ -1,4 +1,4 @@
-//! Paths between the sensors of one robot's ring, with the physics with which a simulation of its world begins.
+//! Paths between the sensors of one robot's ring, with the physics at the beginning of its world's simulation.
 
 use super::channels::Bodies;
 use crate::{
@@ -9,17 +9,17 @@ use crate::{
 };
 
 impl World {
-    /// The paths between a robot's sensors at the start, with the world's physics and the bodies of the other robots.
+    /// Finds the paths between a robot's sensors at the start, with the world's physics and the other robots' bodies.
     ///
-    /// `max_order` replaces the world's own; paths over poles have the world's [`pole_order`](Self::pole_order) at
-    /// most. Empty for a robot that does not exist.
+    /// `max_order` replaces the world's own; paths over poles also have at most the world's
+    /// [`pole_order`](Self::pole_order). Empty for a robot that does not exist.
     ///
     /// # Errors
     /// See [`Tracer::trace`].
     ///
     /// ```
     /// use eeruf_sim::*;
-    /// // A pillar of 0.6 m between a robot and a wall: nothing comes back from behind it.
+    /// A pillar of 0.6 m between a robot and a wall: no sound returns from behind it.
     /// let straight_through = |physics| -> Result<usize, Box<dyn std::error::Error>> {
     ///     let wall = Wall::new(4.0, -5.0, 4.0, 5.0).with_faces(Faces::Both);
     ///     let scene = Scene::new(vec![wall], vec![Pole::new(2.0, 0.0, 0.6)], Air::default())?;
@@ -50,7 +50,7 @@ impl World {
         let scene = furnished.as_ref().map_or(self.scene(), |furnished| &furnished.scene);
         let mut tracer = Tracer::new();
         tracer.follow(&self.physics());
-        // A body shades whatever the physics.
+        // Bodies shade under any physics.
         tracer.pole_shadows |= furnished.is_some();
         tracer.pole_order = self.pole_order().min(max_order);
         let kinds: Vec<Transducer> = of.transducers().collect();

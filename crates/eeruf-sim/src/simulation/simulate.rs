@@ -1,4 +1,4 @@
-//! Running a world under a method.
+//! Simulation of a world under a method.
 
 use super::engine::{self, Own};
 use super::error::SimulationError;
@@ -9,8 +9,7 @@ use crate::{methods::Method, results::Readings, threads::Stop, world::World};
 /// Simulates a world under a method. The same world, method and options give the same readings, bit for bit.
 ///
 /// # Errors
-/// If a robot's ring cannot fire by the method with its listening times, or if something moves out of the scene's
-/// reach.
+/// A robot's ring cannot fire by the method with its listening times, or something moves out of the scene's reach.
 ///
 /// ```
 /// use eeruf_sim::*;
@@ -27,8 +26,8 @@ pub fn simulate(world: &World, method: Method, options: &Options) -> Result<Read
     simulate_while(world, method, options, |_| true)
 }
 
-/// Simulates like [`simulate`], and sometimes calls back with the passed share of the time, 0 to 1. If that returns
-/// `false`, it stops with [`SimulationError::Stopped`].
+/// Simulates like [`simulate`], and sometimes calls `keep_going` with the passed share of the time, 0 to 1. If it
+/// returns `false`, the simulation stops with [`SimulationError::Stopped`].
 ///
 /// # Errors
 /// See [`simulate`].
@@ -41,8 +40,8 @@ pub fn simulate_while(
     simulate_until(world, method, options, &Stop::default(), keep_going)
 }
 
-/// Simulates like [`simulate_while`]; `stop` also ends it from another thread, even while paths are being computed
-/// before the first event.
+/// Simulates like [`simulate_while`]; `stop` also ends the simulation from another thread, even while paths are
+/// computed before the first event.
 ///
 /// # Errors
 /// See [`simulate`].

@@ -8,7 +8,7 @@ use crate::{
     world::World,
 };
 
-/// Time before a robot's last steering for which its places are remembered, in nanoseconds: longer than sound is heard.
+/// Time before a robot's last steering for which its poses are remembered, in nanoseconds: longer than sound is heard.
 const REMEMBERED: u64 = 10_000_000_000;
 
 /// Steered robots, each from its first steering on.
@@ -22,7 +22,7 @@ pub(super) struct Steered {
 #[derive(Clone, Default)]
 struct Legs {
     legs: VecDeque<Leg>,
-    /// Time before which legs are forgotten.
+    /// Time before which legs have been forgotten.
     known_since: u64,
 }
 
@@ -50,14 +50,14 @@ impl Steered {
             legs.pop_front();
             *known_since = legs.front().map_or(0, |first| first.since);
         }
-        // From one moment to the same nothing moves.
+        // A leg that ends when it begins moves nothing.
         if legs.back().is_some_and(|last| last.since == now) {
             legs.pop_back();
         }
         legs.push_back(Leg { since: now, pose, v_m_s, w_rad_s });
     }
 
-    /// Places a robot elsewhere from now on, with the speeds set last.
+    /// Moves a robot to another place from now on, with the speeds set last.
     pub(super) fn place(&mut self, robot: usize, now: u64, pose: Pose) {
         let legs = &mut self.legs[robot].legs;
         let (v_m_s, w_rad_s) = legs.back().map_or((0.0, 0.0), |last| (last.v_m_s, last.w_rad_s));
@@ -79,7 +79,7 @@ impl Leg {
         let Self { since, pose, v_m_s, w_rad_s } = *self;
         let time_s = now.saturating_sub(since) as f64 * 1e-9;
         let half_rad = 0.5 * w_rad_s * time_s;
-        // The chord of the arc, which heads half of the turn aside.
+        // The chord of the arc is turned by half of the arc's angle.
         let chord_m = v_m_s * time_s * if half_rad.abs() < 1e-6 { 1.0 } else { libm::sin(half_rad) / half_rad };
         let heading = pose.rotation.angle();
         let ahead = |rad: f64| Vector::new(libm::cos(rad), libm::sin(rad));

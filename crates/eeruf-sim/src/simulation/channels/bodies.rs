@@ -8,14 +8,14 @@ use crate::{
     world::World,
 };
 
-/// Numbers of bodies among a scene's walls and poles. Each side and each disc keeps its number whichever bodies are
-/// left out: first those of the scene, then the sides and discs of all robots in order.
+/// Numbers of bodies among a scene's walls and poles. Each side and each disc keeps its number no matter which bodies
+/// are left out: the scene's own objects come first, then the sides and discs of all robots in order.
 #[derive(Clone)]
 pub(in crate::simulation) struct Bodies {
     /// For each robot, its first side and its disc.
     first: Vec<[u32; 2]>,
     any: bool,
-    /// Recent scenes of the world with these sides; for robots that stand they are the same in every firing.
+    /// Recent scenes of the world with these sides; they stay the same while robots stand.
     sided: Vec<(Vec<Wall>, Scene)>,
 }
 
@@ -51,7 +51,7 @@ impl Bodies {
         self.any
     }
 
-    /// The world's scene with the bodies of all robots but these; `None` if there is nothing to add.
+    /// Returns the world's scene with the bodies of all robots except these; `None` if there is nothing to add.
     pub(in crate::simulation) fn scene(
         &mut self,
         world: &World,
@@ -83,7 +83,7 @@ impl Bodies {
         }
         let Some(&(robot, _)) = bodies.first() else { return Ok(None) };
         let own = [scene.walls().len(), scene.poles().len()];
-        // What touches nothing makes a scene.
+        // Bodies that touch nothing make a valid scene.
         let furnished = self.with_sides(scene, sides).and_then(|sided| sided.with_more_poles(discs));
         let scene = furnished.map_err(|_| PathsError::Body { robot })?;
         Ok(Some(Furnished { scene, own, walls: wall_numbers, poles: pole_numbers }))
@@ -99,7 +99,7 @@ impl Bodies {
             None => {
                 let walls = [scene.walls(), &sides].concat();
                 let built = Scene::new(walls, scene.poles().to_vec(), scene.air())?.with_room(scene.room().copied())?;
-                // One for each robot that may be left out.
+                // Keep one scene for each robot that may be left out.
                 self.sided.truncate(self.first.len());
                 self.sided.insert(0, (sides, built));
                 0
@@ -110,13 +110,13 @@ impl Bodies {
 }
 
 impl Furnished {
-    /// Renumbers bounces with their numbers in every scene of the world.
+    /// Replaces the numbers in bounces by the numbers that hold in every scene of the world.
     pub(in crate::simulation) fn number(&self, bounces: &mut [Bounce]) {
         for bounce in bounces {
             let (own, numbers, index) = match bounce {
                 Bounce::Wall(wall) => (self.own[0], &self.walls, wall),
                 Bounce::Pole(pole) => (self.own[1], &self.poles, pole),
-                // Those of bodies follow the scene's own, and are numbered as in this very scene.
+                // Edges of bodies follow the scene's own, and keep their numbers in this scene.
                 Bounce::Edge(_) | Bounce::Floor | Bounce::Ceiling => continue,
             };
             if let Some(number) = (*index as usize).checked_sub(own).and_then(|body| numbers.get(body)) {

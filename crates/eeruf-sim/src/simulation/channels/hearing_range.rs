@@ -6,7 +6,7 @@ use crate::{
     world::{FARTHEST, World},
 };
 
-/// Level below the threshold, in dB, at which sound is ignored where arrivals add. A choice.
+/// Level in dB below the threshold at which sound is still considered if arrivals add. A choice.
 const HEARD_TOGETHER_DB: f64 = 10.0;
 
 /// Limits of the sound that one kind of transducer hears from another in this world.
@@ -14,11 +14,11 @@ const HEARD_TOGETHER_DB: f64 = 10.0;
 pub(super) struct HearingRange {
     sending: Transducer,
     hearing: Transducer,
-    /// The amplitude that is just heard.
+    /// The least amplitude that is heard.
     pub(super) floor: f64,
-    /// The faintest level that is heard if the strongest fading raises it, or other arrivals within a burst.
+    /// The faintest level that is heard if the strongest fading, or other arrivals within a burst, raise it.
     pub(super) faintest: f64,
-    /// The longest path that is then heard, in metres.
+    /// The longest path that is heard at that level, in metres.
     pub(super) longest_m: f64,
 }
 
@@ -34,7 +34,7 @@ impl HearingRange {
         Self { sending: *sending, hearing: *hearing, floor, faintest, longest_m }
     }
 
-    /// Frequency of what is sent, in Hz.
+    /// Frequency of the sending transducer, in Hz.
     pub(super) fn frequency_hz(&self) -> f64 {
         self.sending.frequency_hz
     }
@@ -44,8 +44,8 @@ impl HearingRange {
     }
 }
 
-/// The longest path, in metres, on which sound could be heard: a millimetre more than where it falls to `floor` by
-/// spreading and the air alone.
+/// Returns the longest path, in metres, on which sound could be heard: a millimetre more than the length at which
+/// spreading and the air alone reduce it to `floor`.
 fn longest_audible_m(transducer: &Transducer, air: Air, floor: f64) -> f64 {
     let loss_db_per_m = air.absorption_db_per_m(transducer.frequency_hz);
     let (mut near, mut far) = (0.0, 1.0 / floor);

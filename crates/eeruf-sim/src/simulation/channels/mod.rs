@@ -1,5 +1,5 @@
-//! The channels of a world: every path from each emitter to each receiver that can be loud enough, computed once while
-//! nothing moves, and again for each firing otherwise.
+//! The channels of a world: every path from each emitter to each receiver that can be loud enough. They are computed
+//! once while nothing moves, and otherwise again for each firing.
 
 mod bodies;
 mod hearing_range;
@@ -30,7 +30,7 @@ use shared::Snapshot;
 /// One path from an emitter to a receiver, as the event loop needs it.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Channel {
-    /// The receiver, counted over all robots.
+    /// The index of the receiver, counted over all robots.
     pub(crate) receiver: u32,
     /// The path's number, see [`Channels::paths`].
     pub(crate) path: u32,
@@ -40,29 +40,29 @@ pub(crate) struct Channel {
     pub(crate) delay: u64,
     /// Phase of the carrier when the sound begins to arrive, as a share of a turn.
     pub(crate) turn: f32,
-    /// Level above the detection floor, the receiver's gain left out.
+    /// Level above the detection floor, without the receiver's gain.
     pub(crate) level_over_threshold_db: f32,
 }
 
 impl Channel {
-    /// Returns the sound of this channel from a time on, with a level, and with bursts of this length for its receiver.
+    /// Returns the sound of this channel with its onset and level, and with the receiver's burst length.
     pub(crate) fn wave(&self, onset: u64, level_over_threshold_db: f32, burst: u64) -> Wave {
         let Self { receiver, path, turn, .. } = *self;
         Wave { receiver: receiver as usize, onset, burst, turn, path, level_over_threshold_db }
     }
 }
 
-/// Returns true if sound may matter that reaches a sensor at about a time, plus or minus a slack, in true nanoseconds.
+/// Returns true if sound that reaches a sensor at about a time, plus or minus a slack, may matter; in true nanoseconds.
 pub(crate) type Arrives<'a> = &'a dyn Fn(usize, u64, u64) -> bool;
 
-/// Phase of sound that an edge returns towards its source, as a share of a turn: that of Keller's coefficient, `-exp(-j
-/// pi / 4)`.
+/// Phase of sound that an edge returns towards its source, as a share of a turn: the phase of Keller's coefficient,
+/// `-exp(-j pi / 4)`.
 const EDGE_TURN: f64 = 0.375;
 
 /// All channels of a world.
 #[derive(Clone)]
 pub(crate) struct Channels {
-    /// The present world; earlier ones differed only in their scenes.
+    /// The present world; earlier worlds differed only in their scenes.
     world: Arc<World>,
     /// Identity of each sensor of the world.
     ids: Vec<SensorId>,
@@ -76,15 +76,15 @@ pub(crate) struct Channels {
     bodies: Bodies,
     /// For each robot, true if its hearing matters.
     listens: Vec<bool>,
-    /// The channels from each emitter while nothing moves, with one more start at the end; otherwise those of the last
-    /// firing.
+    /// The channels from each emitter while nothing moves, with one more start at the end; otherwise the channels of
+    /// the last firing.
     channels: Vec<Channel>,
     starts: Vec<usize>,
     /// Every path met so far.
     paths: PathNumbers,
-    /// Paths of this scene that other simulations have met, if they are shared.
+    /// Paths of this scene that other simulations have found, if they are shared.
     shared: Option<Arc<SharedPaths>>,
-    // Kept between firings for their memory.
+    // These are kept between firings for their memory.
     poses: Vec<Pose>,
     velocities: Vec<Vector>,
     robots: Vec<Pose>,
@@ -134,18 +134,18 @@ impl Channels {
         copy
     }
 
-    /// Every sensor of the world.
+    /// Identities of all sensors of the world.
     pub(crate) fn ids(&self) -> &[SensorId] {
         &self.ids
     }
 
-    /// The number of a robot's first sensor.
+    /// Returns the index of a robot's first sensor.
     pub(crate) fn first_of(&self, robot: usize) -> usize {
         self.first[robot]
     }
 
-    /// Updates the channels from this emitter to a time, in true nanoseconds. If they are computed now, those that do
-    /// not matter are left out.
+    /// Updates the channels from this emitter to a time, in true nanoseconds. Channels that are computed now and do not
+    /// matter are left out.
     pub(crate) fn prepare(
         &mut self,
         emitter: usize,
@@ -156,13 +156,13 @@ impl Channels {
         if self.moves { self.compute_from(emitter, now, kinematics, matters) } else { Ok(()) }
     }
 
-    /// The channels from an emitter that was prepared.
+    /// Returns the channels from an emitter that was prepared.
     pub(crate) fn from(&self, emitter: usize) -> &[Channel] {
         if self.moves { &self.channels } else { &self.channels[self.starts[emitter]..self.starts[emitter + 1]] }
     }
 
-    /// The travelling time of a prepared sensor's reading alone: its own sound's first arrival that is loud enough, or
-    /// [`NEVER`].
+    /// Returns the travelling time that a prepared sensor would read alone: the first arrival of its own sound that is
+    /// loud enough, or [`NEVER`].
     pub(crate) fn reference(&self, sensor: usize, hearing: &Hearing) -> u64 {
         let own = self.from(sensor).iter().filter(|channel| channel.receiver as usize == sensor);
         if self.world.physics().interference {
@@ -184,7 +184,7 @@ impl Channels {
         heard.min().unwrap_or(NEVER)
     }
 
-    /// Shares the paths of the present scene with other simulations, as long as it does not change.
+    /// Shares the paths of the present scene with other simulations until the scene changes.
     pub(crate) fn share(&mut self, shared: Arc<SharedPaths>) {
         self.shared = Some(shared);
     }
@@ -213,7 +213,7 @@ impl Channels {
         if changed.is_err() {
             self.world = before;
             if self.begin_anew(kinematics).is_err() {
-                // It was stopped: they are looked for when something fires.
+                // The search was stopped: paths are searched for when a sensor fires.
                 self.moves = true;
             }
         }
@@ -273,8 +273,8 @@ impl Channels {
         traced
     }
 
-    /// Looks for the channels from an emitter as [`trace`](Self::trace) does, but along the paths that there were at
-    /// the nearest instant at which they are shared.
+    /// Finds the channels from an emitter like [`trace`](Self::trace), but along the paths at the nearest instant for
+    /// which paths are shared.
     fn trace_shared(
         &mut self,
         shared: &SharedPaths,
@@ -286,14 +286,14 @@ impl Channels {
     ) -> Result<(), PathsError> {
         let at = shared.instant(now);
         self.set_poses(at, kinematics);
-        // Whoever found them was where this one is at that instant.
+        // Shared paths are used only if they were found for the same positions at that instant.
         let known = shared.get(at, emitter).filter(|known| known.poses == self.poses);
         let known = match known {
             Some(known) => Ok(known),
             None => self.snapshot(emitter, receivers).map(|found| shared.put(at, emitter, found)),
         };
         self.set_poses(now, kinematics);
-        // Where it will be at that instant, or would have been, may be in a wall.
+        // The robot's position at that instant may be in a wall.
         let Ok(Snapshot { poses, groups }) = known.as_deref() else {
             return self.trace(&[emitter], receivers, matters, found);
         };
@@ -303,7 +303,7 @@ impl Channels {
         Ok(())
     }
 
-    /// The paths from an emitter to all that hear it where they are.
+    /// Finds the paths from an emitter to all receivers that hear it, at their present positions.
     fn snapshot(&mut self, emitter: usize, receivers: &[usize]) -> Result<Snapshot, PathsError> {
         let mut snapshot = Snapshot { poses: self.poses.clone(), groups: vec![] };
         for listeners in self.hearing(emitter, receivers) {
@@ -313,7 +313,7 @@ impl Channels {
         Ok(snapshot)
     }
 
-    /// Sensors of one kind together, those of robots with a body or a mounting that carries sound each on their own.
+    /// Groups sensors of one kind; sensors of robots with a body or with a mounting that carries sound, also by robot.
     fn alike(&self, sensors: &[usize]) -> Vec<Vec<usize>> {
         let mut groups: Vec<Vec<usize>> = Vec::new();
         let same = |a: usize, b: usize| {
@@ -330,12 +330,12 @@ impl Channels {
         groups
     }
 
-    /// The sensor's robot, if it has a body.
+    /// Returns the sensor's robot, if it has a body.
     fn embodied(&self, sensor: usize) -> Option<usize> {
         self.robot_of(sensor).body.map(|_| usize::from(self.ids[sensor].robot))
     }
 
-    /// The sensor's robot, if its mounting carries sound from sensor to sensor.
+    /// Returns the sensor's robot, if its mounting carries sound from sensor to sensor.
     fn coupled(&self, sensor: usize) -> Option<usize> {
         self.robot_of(sensor).coupling_db.map(|_| usize::from(self.ids[sensor].robot))
     }
@@ -356,7 +356,7 @@ impl Channels {
     }
 
     /// Finds the channels from a group of emitters to all of these receivers that hear them, including paths that only
-    /// the strongest fading lifts over the detection floor.
+    /// the strongest fading raises above the detection floor.
     fn trace(
         &mut self,
         emitters: &[usize],
@@ -374,14 +374,14 @@ impl Channels {
         Ok(())
     }
 
-    /// The receivers that hear an emitter, by kinds.
+    /// Groups the receivers that hear an emitter by kind.
     fn hearing(&self, emitter: usize, receivers: &[usize]) -> Vec<Vec<usize>> {
         let sending = self.transducer_of(emitter);
         let hears = |&sensor: &usize| self.transducer_of(sensor).hears(&sending);
         self.alike(&receivers.iter().copied().filter(hears).collect::<Vec<_>>())
     }
 
-    /// Searches for the paths from emitters that are alike to listeners that are alike, into `self.matrix`.
+    /// Searches for the paths from emitters of one kind to listeners of one kind, into `self.matrix`.
     fn search(
         &mut self,
         emitters: &[usize],
@@ -403,7 +403,7 @@ impl Channels {
         let limits = Limits { max_order: world.max_order(), max_length_m: range.longest_m };
         self.tracer.pole_order = world.pole_order();
         self.tracer.follow(&world.physics());
-        // A body shades whatever the physics.
+        // Bodies shade under any physics.
         self.tracer.pole_shadows |= furnished.is_some();
         // The receiver's gain depends on when the receiver fired, so it cannot be applied here.
         let flat = Transducer { gain: GainProfile::Constant, ..*transducer };
@@ -420,14 +420,14 @@ impl Channels {
         Ok(())
     }
 
-    /// Returns a function that tells if sound matters to one of the listeners after a path of a given length.
+    /// Returns a function that is true if sound matters to one of the listeners after a path of a given length.
     fn by_length<'a>(
         &self,
         listeners: &[usize],
         (now, arrives): (u64, Arrives<'a>),
     ) -> impl Fn(usize, f64) -> bool + 'a {
         let c = self.world.scene().air().speed_of_sound();
-        // A receiver that moves is reached this share of the time earlier or later at most.
+        // A moving receiver is reached earlier or later by at most this share of the time.
         let slack_of = |&sensor: &usize| {
             let speed = self.velocities[sensor].norm();
             (sensor, speed / (c - speed))
@@ -441,7 +441,7 @@ impl Channels {
         }
     }
 
-    /// The amplitude that the mounting carries from one sensor to another.
+    /// Returns the amplitude that the mounting carries from one sensor to another.
     fn coupling(&self, emitter: usize, receiver: usize) -> f64 {
         let on_one = self.coupled(emitter).filter(|&robot| self.coupled(receiver) == Some(robot));
         on_one.map_or(0.0, |robot| self.world.robots()[robot].coupling())
@@ -488,7 +488,7 @@ impl Channels {
         }
     }
 
-    /// The heights of sensors, where they matter.
+    /// Returns the heights of sensors; empty in a flat scene.
     fn heights_of(&self, scene: &Scene, sensors: &[usize]) -> Vec<f64> {
         let height_m = |&sensor: &usize| self.robot_of(sensor).height_m(usize::from(self.ids[sensor].sensor));
         if scene.room().is_some() { sensors.iter().map(height_m).collect() } else { Vec::new() }
@@ -509,7 +509,7 @@ impl Channels {
         }
     }
 
-    /// The channel of a path whose bounces are in `self.bounces`.
+    /// Makes the channel of a path whose bounces are in `self.bounces`.
     fn channel(&mut self, ends: [usize; 2], path: &CriticalPath, range: &HearingRange) -> Option<Channel> {
         let receiver = ends[1];
         let velocity = self.velocities[receiver];

@@ -1,4 +1,4 @@
-//! Numbers of paths: one for the same walls and poles between the same sensors.
+//! Numbers of paths: paths over the same walls and poles between the same sensors have one number.
 
 use core::hash::{BuildHasherDefault, Hasher};
 use std::collections::HashMap;
@@ -20,7 +20,7 @@ pub(super) struct PathNumbers {
 }
 
 impl PathNumbers {
-    /// The number of a path from one sensor to another, a new one if it was never met.
+    /// Returns the number of a path from one sensor to another, a new one if the path is new.
     pub(super) fn number(
         &mut self,
         [emitter, receiver]: [SensorId; 2],
@@ -53,7 +53,7 @@ impl PathNumbers {
         number
     }
 
-    /// A key that depends only on a path's ends and bounces, and so is equal in every simulation.
+    /// Returns a key that depends only on a path's ends and bounces, and so is equal in every simulation.
     pub(super) fn key(&self, number: u32) -> u64 {
         self.keys[number as usize]
     }
@@ -80,7 +80,7 @@ fn key_of(ends: [SensorId; 2], bounces: &[Bounce]) -> u64 {
     all.bits()
 }
 
-/// A hasher that keeps a key as it is, since keys are already well mixed.
+/// A hasher that does not change keys, since they are already well mixed.
 #[derive(Default)]
 struct AsItIs(u64);
 
@@ -90,7 +90,7 @@ impl Hasher for AsItIs {
     }
 
     fn write(&mut self, bytes: &[u8]) {
-        // Keys are whole numbers, which come by the other function.
+        // Keys are whole numbers, which are hashed by the other function.
         self.0 = bytes.iter().fold(self.0, |key, byte| key.rotate_left(8) ^ u64::from(*byte));
     }
 

@@ -1,12 +1,12 @@
-//! Paths that simulations of one scene share, whatever the firing method: found for the robots' poses at instants a
-//! step apart, and adapted from the nearest instant to each firing.
+//! Paths that simulations of one scene share under any firing method: found for the robots' poses at instants a step
+//! apart, and adapted from the nearest instant to each firing.
 
 use std::collections::HashMap;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use crate::{geometry::Pose, tracing::CrosstalkMatrix};
 
-/// Paths found so far in one scene. Simulations that share them differ in how robots fire and listen alone.
+/// Paths found so far in one scene. Simulations that share them may differ only in the robots' firing and listening.
 #[derive(Debug)]
 pub(crate) struct SharedPaths {
     /// Time from one instant to the next, in nanoseconds.
@@ -15,7 +15,7 @@ pub(crate) struct SharedPaths {
     found: Mutex<HashMap<(u64, usize), Arc<Snapshot>>>,
 }
 
-/// The paths from an emitter, or from emitters that are alike, at an instant.
+/// The paths from an emitter, or from emitters of one kind, at an instant.
 #[derive(Debug)]
 pub(super) struct Snapshot {
     /// Poses of all sensors at the instant.
@@ -30,7 +30,7 @@ impl SharedPaths {
         Self { step: ((step_s * 1e9) as u64).max(1), found: Mutex::default() }
     }
 
-    /// The instant nearest to a time, in nanoseconds.
+    /// Returns the instant nearest to a time, in nanoseconds.
     pub(super) fn instant(&self, now: u64) -> u64 {
         (now + self.step / 2) / self.step * self.step
     }
@@ -54,7 +54,7 @@ mod tests {
     use super::SharedPaths;
     use crate::*;
 
-    /// Readings alone and in fact of a robot that drives, and then turns, in a room.
+    /// Returns each reading and its reference for a robot in a room that drives and then turns.
     fn read(shared: Option<&Arc<SharedPaths>>) -> Vec<[f64; 2]> {
         let corners = [[-2.5, -2.0], [2.5, -2.0], [2.5, 2.0], [-2.5, 2.0], [-2.5, -2.0]];
         let scene = Scene::new(Wall::polyline(&corners).collect(), vec![Pole::new(1.2, 1.0, 0.06)], Air::default());
@@ -75,7 +75,7 @@ mod tests {
         read
     }
 
-    // 30 us are 5 mm. A robot that drives is 30 mm, 175 us, farther on after 60 ms.
+    // The tolerance of 30 us is 5 mm. In 60 ms the robot drives 30 mm, which changes a reading by 175 us.
     #[test]
     fn shared_paths_are_carried_on_to_each_firing() {
         let exact = read(None);
@@ -89,7 +89,7 @@ mod tests {
             let heard = pairs.iter().filter(|[one, other]| !one.is_nan() && !other.is_nan()).count();
             assert!(heard > 40 && agree * 100 > pairs.len() * 95, "{agree}, {heard} of {}: {pairs:?}", pairs.len());
         }
-        // Whoever asks next finds what was found.
+        // The next simulation uses the paths that were found.
         let known = shared.found.lock().unwrap().len();
         assert!(known > 40, "{known}");
         let bits = |read: Vec<[f64; 2]>| read.into_iter().map(|pair| pair.map(f64::to_bits)).collect::<Vec<_>>();

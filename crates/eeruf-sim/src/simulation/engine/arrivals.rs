@@ -8,7 +8,7 @@ use crate::simulation::channels::Channel;
 use crate::simulation::receiver::{Arrival, EXTERNAL, Envelope, NEVER, Receiver};
 use crate::world::{FARTHEST, Noise, Normal, Random, World};
 
-// What the streams of random numbers are for.
+// Purposes of the streams of random numbers.
 const ARRIVALS: u64 = 1;
 const BURSTS: u64 = 2;
 const FADING: u64 = 4;
@@ -18,14 +18,14 @@ const FADING: u64 = 4;
 pub(crate) struct Propagation {
     /// Random numbers drawn again for each firing.
     random: Random,
-    /// Random processes in time.
+    /// Random processes in time, for fading.
     fading: Random,
     normal: &'static Normal,
     fading_db: f32,
     jitter_ns: f32,
     /// Greatest deviation of an arrival's time, in nanoseconds.
     slack: u64,
-    /// The sounds that add, if they do.
+    /// The sounds that add, if sounds add.
     sum: Option<Envelope>,
     /// Length of each sensor's burst in nanoseconds, if sounds add.
     bursts: Vec<u64>,
@@ -33,11 +33,11 @@ pub(crate) struct Propagation {
     knot_ns: u64,
 }
 
-/// Share of the time between knots after which the correlation of [`Propagation::faded`] is 1/e.
+/// Share of the time between knots after which the correlation of [`Propagation::faded`] has fallen to 1/e.
 const CORRELATED: f64 = 0.939;
 
 impl Propagation {
-    /// Propagation with the noise of a world, from this seed.
+    /// Makes propagation with the noise of a world, from this seed.
     pub(crate) fn new(world: &World, seed: Random) -> Self {
         let (noise, physics) = (world.noise(), world.physics());
         let jitter_ns = (noise.jitter_us_rms * 1000.0) as f32;
@@ -45,7 +45,7 @@ impl Propagation {
         let bursts = || world.robots().iter().flat_map(|robot| robot.transducers().map(burst_ns));
         let longest = bursts().max().unwrap_or(0);
         let walk = match (physics.interference, physics.range_walk) {
-            // A sum may cross the threshold as long as its last sound lasts.
+            // A sum may cross the threshold until its last sound ends.
             (true, _) => 2 * longest,
             (false, true) => longest,
             (false, false) => 0,
@@ -63,18 +63,18 @@ impl Propagation {
         }
     }
 
-    /// Returns true if randomness depends on the paths' keys, and not on when they were met.
+    /// Returns true if random values depend on the paths' keys, and not on the order in which paths are found.
     pub(crate) fn is_keyed(&self) -> bool {
         self.knot_ns > 0
     }
 
-    /// The slack of an arrival whose own time is uncertain by `more`, in nanoseconds.
+    /// Returns the slack of an arrival whose own time is uncertain by `more`, in nanoseconds.
     pub(crate) fn slack(&self, more: u64) -> u64 {
         self.slack.saturating_add(more)
     }
 
-    /// Sends out the sound of a firing at `now`; `emitter` and the number of its `firing` identify it. Each arrival
-    /// that may matter to its receiver is passed to `arrive` with the receiver's number; absent receivers are skipped.
+    /// Sends the sound of the firing at `now`, identified by `emitter` and the number `firing`. Passes each arrival
+    /// that may matter to its receiver to `arrive`, with the receiver's number; skips absent receivers.
     #[inline]
     pub(crate) fn send(
         &mut self,
@@ -113,13 +113,13 @@ impl Propagation {
         }
     }
 
-    /// Fading and shift of a path with this key at a time, both normally distributed: a function of the seed, the path
-    /// and the time alone, so that the order of calls does not matter.
+    /// Returns the fading and shift of a path with this key at a time, both normally distributed. They depend only on
+    /// the seed, the path and the time, so that the order of calls does not matter.
     ///
-    /// Between independent normal numbers at knots, each path's at places of its own, it goes along a quarter of a
-    /// circle, which keeps the variance: at the share `u` of the way `cos(u pi / 2) a + sin(u pi / 2) b`. At a distance
-    /// of `s` knots, up to one, its correlation is `(1 - s / 2) cos(s pi / 2) + sin(s pi / 2) / pi`; beyond two it is
-    /// 0.
+    /// Each path has independent normal numbers at knots in time, at times of its own. Between two knots the value
+    /// follows a quarter of a circle, which keeps the variance: at the share `u` of the way it is
+    /// `cos(u pi / 2) a + sin(u pi / 2) b`. At a distance of `s` knots, up to one, the correlation is
+    /// `(1 - s / 2) cos(s pi / 2) + sin(s pi / 2) / pi`; beyond two knots it is 0.
     fn faded(&self, key: u64, now: u64) -> [f32; 2] {
         let path = self.fading.of(key);
         let since = now + path.of(0).bits() % self.knot_ns;
@@ -142,7 +142,7 @@ pub(crate) struct Bursts {
 }
 
 impl Bursts {
-    /// The bursts of a world, from its seed.
+    /// Makes the bursts of a world, from its seed.
     pub(crate) fn new(noise: &Noise, seed: Random) -> Self {
         let mut bursts = Self { random: seed.of(BURSTS), normal: Normal::shared(), noise: *noise, next: 0 };
         bursts.advance();
@@ -153,16 +153,16 @@ impl Bursts {
     pub(crate) fn advance(&mut self) {
         let rate = self.noise.bursts_per_s;
         self.next = if rate > 0.0 {
-            // A Poisson process: the time to its next event, by a share from above 0 to 1.
+            // In a Poisson process the time to the next event follows from a share above 0 and up to 1.
             let share = ((self.random.bits() >> 11) + 1) as f64 / (1u64 << 53) as f64;
-            // At least a nanosecond on, so that time passes.
+            // Advance by at least a nanosecond, so that time passes.
             self.next.saturating_add(1 + (-libm::log(share) / rate * 1e9) as u64)
         } else {
             NEVER
         };
     }
 
-    /// Arrival of a burst at `now` at one receiver; `None` if it is too faint there.
+    /// Returns the arrival of a burst at `now` at one receiver; `None` if it is too faint there.
     pub(crate) fn arrival(&mut self, now: u64) -> Option<Arrival> {
         let [fades, _] = self.normal.pair(self.random.bits());
         let level_over_threshold_db = self.noise.burst_db as f32 + self.noise.fading_db_rms as f32 * fades;

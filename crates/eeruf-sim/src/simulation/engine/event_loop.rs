@@ -1,8 +1,8 @@
 //! The event simulation: rings fire, sound travels, sensors hear, in the order of true time.
 //!
-//! Only two things can happen next to a robot: its ring is due, or one of its sensors hears something. So the event
-//! queue is two moments for each robot, the earlier one first and an echo before the ring on a tie. Sound in flight is
-//! stored with the sensor that it will reach ([`Receiver`]).
+//! Each robot has two possible next events: its ring is due, or one of its sensors hears something. So the event queue
+//! is two moments for each robot. The earlier one comes first, and on a tie the echo comes before the ring. Sound in
+//! flight is stored with the sensor that it will reach ([`Receiver`]).
 
 use std::sync::Arc;
 
@@ -30,7 +30,7 @@ use crate::{
 
 /// Number of events between two calls of `keep_going`.
 const EVENTS_PER_CALL: u32 = 8192;
-/// Interval at which a control loop tells its ring how the robot moves.
+/// Interval at which a control loop reports the robot's motion to its ring.
 const CONTROL_CYCLE_NS: u64 = 20_000_000;
 
 /// A running world.
@@ -43,9 +43,9 @@ pub(crate) struct EventLoop<K> {
     bursts: Bursts,
     /// Receivers of every sensor of the world.
     receivers: Vec<Receiver>,
-    /// Travelling time of each sensor's reading alone, at its last firing.
+    /// Echo time of each sensor's reading if it were alone, at its last firing.
     references: Vec<u64>,
-    /// Motion of each sensor's robot at its last firing, and at the firing before.
+    /// Motion of each sensor's robot at its last firing, and at the firing before that.
     fired: Vec<Option<Moment>>,
     fired_before: Vec<Option<Moment>>,
     propagation: Propagation,
@@ -55,13 +55,13 @@ pub(crate) struct EventLoop<K> {
     /// The method by which each robot fires, and its own table.
     own_tables: Vec<(Method, Option<AnySchedule>)>,
     recorder: Recorder,
-    /// The last moment whose events are reported.
+    /// The last moment for which events are reported.
     last: u64,
     stop: Stop,
     until_call: u32,
 }
 
-/// Runs a world under a method until the time is over or the robots' kinematics end it.
+/// Runs a world under a method until the time is over or the robots' kinematics end the run.
 pub(crate) fn run(
     world: &World,
     method: Method,
@@ -87,8 +87,8 @@ pub(crate) fn end_of(world: &World, periods: u32) -> u64 {
 }
 
 impl<K: Kinematics> EventLoop<K> {
-    /// The state before the first event. Firings from `end`, if given, are not reported. There is room for this many
-    /// readings.
+    /// Makes the state before the first event. Firings from `end` on, if given, are not reported. The recorder has room
+    /// for `room` readings.
     #[expect(clippy::too_many_arguments, reason = "each of them once, in two places")]
     pub(crate) fn new(
         world: &Arc<World>,
@@ -129,7 +129,7 @@ impl<K: Kinematics> EventLoop<K> {
         })
     }
 
-    /// Copies the state, with a separate switch to stop it; `None` if a firing method or filter of the caller's cannot
+    /// Copies the state, with a separate switch to stop it; `None` if the caller's own firing method or filter cannot
     /// be copied.
     pub(crate) fn copy(&self, stop: Stop) -> Option<Self>
     where
@@ -226,7 +226,7 @@ impl<K: Kinematics> EventLoop<K> {
         }
     }
 
-    /// Applies the changes by faults that are due: tables, and the objects in the scene.
+    /// Applies the faults' changes that are due: tables, and objects in the scene.
     fn change(&mut self, rings: &mut [RunningRing]) -> Result<(), SimulationError> {
         let now = self.faults.next();
         let at_s = now as f64 * 1e-9;
@@ -271,7 +271,7 @@ impl<K: Kinematics> EventLoop<K> {
         self.channels.share(shared);
     }
 
-    /// Changes a robot's ring to another schedule, of as many sensors, when its period ends.
+    /// Changes a robot's ring to another schedule for as many sensors, at the end of its period.
     pub(crate) fn change_schedule(&mut self, robot: usize, schedule: &AnySchedule) -> Result<(), ChangeError> {
         self.rings.get_mut(robot).map_or(Err(ChangeError::Fixed), |ring| ring.ring.change_schedule(schedule))
     }
@@ -349,13 +349,13 @@ impl<K: Kinematics> EventLoop<K> {
             return Err(own("firing")(error.clone()));
         }
         let deadline = ring.ring.next_deadline();
-        // A deadline that has passed would be polled for again at the next tick.
+        // After a missed deadline the ring is polled again at the next tick.
         let ahead = if instant.has_reached(deadline) { 1 } else { u64::from(deadline.since(instant).as_micros()) };
         ring.wakes = ring.clock.reaches(ticks + ahead);
         Ok(())
     }
 
-    /// Passes the sounds that its sensors hear now to the ring.
+    /// Passes the sounds that the ring's sensors hear now to the ring.
     fn hear(&mut self, ring: &mut RunningRing, now: u64, ticks: u64, instant: Instant) {
         ring.hears = NEVER;
         for (sensor, number) in ring.sensors.clone().enumerate() {
@@ -393,7 +393,7 @@ impl<K: Kinematics> EventLoop<K> {
         }
     }
 
-    /// Triggers a sensor: it, or the sensor on its trigger wire, begins to listen and sends its sound to every sensor
+    /// Triggers a sensor. It (or the sensor on its trigger wire) begins to listen, and sends its sound to every sensor
     /// that can hear it.
     fn fire(&mut self, rings: &mut [RunningRing], index: usize, triggered: usize, now: u64) -> Result<(), PathsError> {
         self.triggered[triggered] = now;
@@ -419,7 +419,7 @@ impl<K: Kinematics> EventLoop<K> {
         }
         self.fired_before[triggered] = self.fired[triggered];
         self.fired[triggered] = Some(self.kinematics.moment(usize::from(self.channels.ids()[triggered].robot), now));
-        // What will not be heard need not be weighed, unless chance depends on which paths were met.
+        // Inaudible paths need not be evaluated, unless random numbers depend on the paths found.
         let (receivers, propagation) = (&self.receivers, &self.propagation);
         let arrives = |number: usize, at: u64, slack: u64| {
             let receiver = receivers.get(number);
@@ -479,7 +479,7 @@ pub fn expected_readings(world: &World, periods: u32) -> u64 {
     expected(world, end_of(world, periods))
 }
 
-/// Estimates the readings of all rings until a time in true nanoseconds: one a sensor and period.
+/// Estimates the readings of all rings until a time in true nanoseconds: one per sensor and period.
 fn expected(world: &World, end: u64) -> u64 {
     let of = |robot: &Robot| {
         let period = u64::from(robot.period.as_micros()) * 1000;

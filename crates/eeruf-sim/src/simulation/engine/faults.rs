@@ -1,4 +1,4 @@
-//! The active faults of a world under simulation, and their effects on firings and echoes.
+//! The active faults of a simulated world, and their effects on firings and echoes.
 
 use std::sync::Arc;
 
@@ -13,7 +13,7 @@ use crate::{
 const FAULTS: u64 = 5;
 /// Interval between two positions of a door or a leg, in nanoseconds: 5 cm at 1 m/s. A choice.
 const FRAME_NS: u64 = 50_000_000;
-/// Level of noise above what is just heard, in dB: a choice, as loud as a burst from outside.
+/// Level of noise above the threshold, in dB: a choice, as loud as a burst from outside.
 const NOISE_DB: f32 = 20.0;
 /// Level of a glitch, which is not sound and rises at once.
 const GLITCH_DB: f32 = 200.0;
@@ -28,13 +28,13 @@ pub(super) enum Fired {
 
 /// A change that is due.
 pub(super) enum Due {
-    /// A robot fires by this table from now on; by its own if there is none.
+    /// From now on a robot fires by this table, or by its own without one.
     Table(usize, Option<Box<AnySchedule>>),
-    /// Sound travels in this world from now on.
+    /// From now on sound travels in this world.
     Scene(Arc<World>),
 }
 
-/// The faults of a world under way.
+/// The faults of a running world.
 #[derive(Clone)]
 pub(super) struct Faults {
     world: Arc<World>,
@@ -71,7 +71,7 @@ impl Faults {
         self.next
     }
 
-    /// Replaces the world without the objects of faults; returns it with those at a time.
+    /// Replaces the world without objects of faults; returns it with the objects at a time.
     pub(super) fn begin_anew(&mut self, base: Arc<World>, now: u64) -> Result<Arc<World>, WorldError> {
         self.base = base;
         if self.scene_next == NEVER && !self.world.faults().iter().any(|fault| fault.kind.is_of_scene()) {
@@ -92,7 +92,7 @@ impl Faults {
         times.filter(|&at| now.is_none_or(|now| at > now)).min().unwrap_or(NEVER)
     }
 
-    /// The change due at a time, that of [`next`](Self::next).
+    /// Returns the changes due at a time given by [`next`](Self::next).
     pub(super) fn due(&mut self, now: u64) -> Result<Vec<Due>, WorldError> {
         let mut due = vec![];
         let time_s = now as f64 * 1e-9;
@@ -109,7 +109,7 @@ impl Faults {
         }
         if now >= self.scene_next {
             due.push(Due::Scene(self.world_at(now)?));
-            // While something moves, soon; else when it begins to.
+            // The next change comes soon while something moves, or else when it begins to move.
             let of_scene = || faults.iter().filter(|fault| fault.kind.is_of_scene());
             self.scene_next = if of_scene().any(|fault| fault.is_at(time_s) && fault.to_s.is_finite()) {
                 let ends = of_scene().map(|fault| ns(fault.to_s)).filter(|&at| at > now).min().unwrap_or(NEVER);
@@ -122,7 +122,7 @@ impl Faults {
         Ok(due)
     }
 
-    /// The faults that a sensor has at a time, each with its number.
+    /// Returns the faults that a sensor has at a time, each with its number.
     fn of(&self, id: SensorId, now: u64) -> impl Iterator<Item = (u64, &Fault)> {
         let time_s = now as f64 * 1e-9;
         let has = move |fault: &Fault| fault.is_of(id.robot.into(), id.sensor) && fault.is_at(time_s);
@@ -134,13 +134,13 @@ impl Faults {
             .map(|(index, fault)| (index as u64, fault))
     }
 
-    /// A random number from 0 to 1 that depends on a fault, a sensor and its firing.
+    /// Returns a random number from 0 to 1 that depends on a fault, a sensor and its firing.
     fn chance(&self, fault: u64, id: SensorId, firing: u32, what: u64) -> f64 {
         let of_sensor = self.random.of(fault).of(id.robot.into()).of(id.sensor.into());
         of_sensor.of(firing.into()).of(what).bits() as f64 / (u64::MAX as f64 + 1.0)
     }
 
-    /// The result of a sensor's trigger.
+    /// Returns the result of a sensor's trigger.
     pub(super) fn fired(&self, id: SensorId, now: u64) -> Fired {
         let wires = self.of(id, now).filter(|(_, fault)| fault.kind == FaultKind::TriggerWires);
         let sensor = wires.fold(id.sensor, |sensor, (_, fault)| fault.exchanged(sensor));
@@ -155,7 +155,7 @@ impl Faults {
         if sends { Fired::Sends(sensor, late) } else { Fired::Nothing }
     }
 
-    /// Additional sounds of a sensor after a firing, caused by faults.
+    /// Returns additional sounds of a sensor after a firing, caused by faults.
     pub(super) fn heard_beside(&self, id: SensorId, now: u64, firing: u32, hearing: &Hearing) -> Vec<Arrival> {
         let mut heard = vec![];
         let robot = self.world.robots().get(usize::from(id.robot));
@@ -165,7 +165,7 @@ impl Faults {
             let span = hearing.window - hearing.blanking;
             let after = match fault.kind {
                 FaultKind::Noise { per_s } if per_s > 0.0 => {
-                    // The first of a process without memory.
+                    // The wait is that for the first event of a process without memory.
                     let wait_ns = -libm::log(1.0 - chance(0)) / per_s * 1e9;
                     if wait_ns < span as f64 { hearing.blanking + wait_ns as u64 } else { continue }
                 }
@@ -184,7 +184,7 @@ impl Faults {
         heard
     }
 
-    /// The sensor on whose line this sensor's echoes appear; `None` if on no line.
+    /// Returns the sensor on whose line this sensor's echoes appear; `None` if they appear on no line.
     pub(super) fn reported(&self, id: SensorId, now: u64, firing: u32) -> Option<u8> {
         for (index, fault) in self.of(id, now) {
             let silent = match fault.kind {

@@ -1,11 +1,11 @@
-//! [`Filter`]: the caller's own judgement of readings.
+//! [`Filter`]: the caller's own filter of readings.
 
 use eeruf_core::{Reading, ReadingKind};
 
 use crate::methods::OwnError;
 use crate::simulation::receiver::Echo;
 
-/// A judge of one robot's readings that replaces the method's. Give it to a simulation with [`Own`](crate::Own).
+/// A filter of one robot's readings that replaces the method's. Pass it to a simulation with [`Own`](crate::Own).
 ///
 /// ```
 /// use std::collections::HashMap;
@@ -30,7 +30,7 @@ pub trait Filter: Send {
     /// An error ends the simulation, with [`SimulationError::Own`](crate::SimulationError::Own).
     fn push(&mut self, firing: &FiredReading<'_>) -> Result<Filtered, OwnError>;
 
-    /// Returns a copy that continues in the same way; `None`, the default, if it cannot be copied.
+    /// Returns a copy that continues in the same way; `None`, the default, if the filter cannot be copied.
     fn copy(&self) -> Option<Box<dyn Filter>> {
         None
     }
@@ -51,7 +51,7 @@ impl<F: Filter + ?Sized> Filter for Box<F> {
 pub struct FiredReading<'a> {
     /// The ring's own verdict, by the method's judge, with sensor, phase and period.
     pub reading: &'a Reading,
-    /// The echoes, earliest first: one at most, but up to eight under methods of several, such as
+    /// The echoes, earliest first: at most one, or up to eight under methods with several, such as
     /// [`Method::MultiEcho`](crate::Method::MultiEcho).
     pub echoes: &'a [Echo],
     /// Time of the firing, in seconds of true time.
@@ -61,12 +61,12 @@ pub struct FiredReading<'a> {
     pub expected_change_us: i32,
 }
 
-/// The judgement of a firing.
+/// The verdict on a firing.
 #[derive(Clone, Copy, Debug)]
 pub struct Filtered {
     /// The verdict. [`Accepted`](ReadingKind::Accepted) and [`Clear`](ReadingKind::Clear) count as believed.
     pub kind: ReadingKind,
-    /// The echo of the reading: one of this firing, or of an earlier one that the filter has kept; `None` for silence.
+    /// The echo of the reading, of this firing or of an earlier one that the filter has kept; `None` for silence.
     pub echo: Option<Echo>,
 }
 
@@ -74,7 +74,7 @@ impl Filtered {
     /// A believed silence: nothing is in range.
     pub const SILENT: Self = Self { kind: ReadingKind::Clear, echo: None };
 
-    /// A believed echo, or silence.
+    /// Makes a believed echo, or a believed silence.
     pub const fn accepted(echo: Option<Echo>) -> Self {
         Self { kind: if echo.is_some() { ReadingKind::Accepted } else { ReadingKind::Clear }, echo }
     }

@@ -1,5 +1,5 @@
-//! The event loop: which ring acts next, which sound arrives next, and which readings are recorded. It uses channels,
-//! receivers and kinematics.
+//! The event loop, which decides the next ring to act, the next sound to arrive and the readings to record. It uses
+//! channels, receivers and kinematics.
 
 mod arrivals;
 mod event_loop;

@@ -39,7 +39,7 @@ pub struct Own {
 }
 
 impl Own {
-    /// An empty set: all robots follow the method.
+    /// Makes an empty set: all robots follow the method.
     pub fn new() -> Self {
         Self::default()
     }

@@ -14,7 +14,7 @@ use crate::{
     results::{Cause, HeardPath, NO_PATH, Readings, SensorId},
 };
 
-/// Number of readings of a sensor for which room is kept: more than rings emit at one moment.
+/// Number of readings of a sensor that always have room: more than rings emit at one moment.
 const ROOM: usize = 4;
 
 /// Recorder of the readings.
@@ -29,7 +29,7 @@ pub(crate) struct Recorder {
 }
 
 impl Recorder {
-    /// A recorder for firings before `end`, in true nanoseconds, with about this many readings.
+    /// Makes a recorder for firings before `end`, in true nanoseconds, with about this many readings.
     pub(crate) fn new(
         method: Method,
         end: u64,
@@ -47,7 +47,7 @@ impl Recorder {
         Ok(Self { readings, filters, earlier: vec![VecDeque::new(); ids.len()], ids: ids.to_vec(), end })
     }
 
-    /// A recorder in the same state; `None` if a filter of the caller's cannot be copied.
+    /// Returns a recorder in the same state; `None` if the caller's own filter cannot be copied.
     pub(crate) fn copy(&self) -> Option<Self> {
         let copy_of = |filter: &Option<Box<dyn Filter>>| match filter {
             None => Some(None),
@@ -74,9 +74,9 @@ impl Recorder {
         self.readings.try_reserve(more).map_err(|_| SimulationError::Memory { readings: (readings + more) as u64 })
     }
 
-    /// Records the judgement of a firing; its echo may be that of an earlier firing, `stands_for` firings before.
-    /// `reference` is the travelling time of the sensor's reading alone, `fired_from` its place and heading at the
-    /// trigger. Returns all readings, this one last; `None` if it does not count.
+    /// Records the judgement of a firing, whose echo may come from `stands_for` firings earlier. `reference` is the
+    /// echo time of the sensor's reading if it were alone, `fired_from` its place and heading at the trigger. Returns
+    /// all readings, this one last; `None` if it does not count.
     pub(crate) fn record(
         &mut self,
         sensor: usize,
@@ -108,7 +108,7 @@ impl Recorder {
             Some(Echo { arrival, of_this_firing, .. }) => {
                 let (cause, path) = match (arrival.path, of_this_firing) {
                     (EXTERNAL, _) => (Cause::External, NO_PATH),
-                    // Whether it is another sensor's sound is decided by `take`, which knows the paths.
+                    // `take`, which knows the paths, decides if it is another sensor's sound.
                     (path, true) => (Cause::Own, path),
                     (path, false) => (Cause::Stale, path),
                 };
@@ -136,7 +136,7 @@ impl Recorder {
         Ok(Some(out))
     }
 
-    /// Takes the record since the last call, with this duration and only the paths of its readings.
+    /// Returns the readings since the last call, with this duration and only the paths that they use.
     pub(crate) fn take(&mut self, paths: &[HeardPath], duration_s: f64) -> Readings {
         let mut readings = self.readings.take();
         readings.duration_s = duration_s;

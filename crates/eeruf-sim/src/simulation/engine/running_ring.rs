@@ -28,7 +28,7 @@ pub(crate) struct RunningRing {
     pub(crate) clock: Ticker,
     /// Hearing of each sensor.
     hearings: Vec<Hearing>,
-    /// The first number of its sensors among all of the world's.
+    /// The range of the ring's sensors among all sensors of the world.
     pub(crate) sensors: core::ops::Range<usize>,
     /// Time when the ring is due.
     pub(crate) wakes: u64,
@@ -39,19 +39,19 @@ pub(crate) struct RunningRing {
 }
 
 impl RunningRing {
-    /// A ring in the same state; `None` if its firing method cannot be copied.
+    /// Returns a ring in the same state; `None` if its firing method cannot be copied.
     pub(crate) fn copy(&self) -> Option<Self> {
         let (world, hearings, sensors) = (Arc::clone(&self.world), self.hearings.clone(), self.sensors.clone());
         Some(Self { world, ring: self.ring.copy()?, hearings, sensors, ..*self })
     }
 
-    /// Hearing of a sensor, given by its number in the world.
+    /// Returns the hearing of a sensor, given by its number in the world.
     pub(crate) fn hearing_of(&self, number: usize) -> &Hearing {
-        // One for each of its sensors.
+        // The ring has one entry for each of its sensors.
         &self.hearings[number - self.sensors.start]
     }
 
-    /// The longest time that one of its sensors listens.
+    /// Returns the longest listening time of the ring's sensors.
     pub(crate) fn longest_window(&self) -> u64 {
         self.hearings.iter().map(|hearing| hearing.window).max().unwrap_or(0)
     }
@@ -64,7 +64,7 @@ pub(crate) struct Plan {
     pub(crate) firing: Option<FiringPlan>,
 }
 
-/// The plan of each robot, except those that fire by the caller's `own`.
+/// Returns the plan of each robot, except those that fire by the caller's `own`.
 pub(crate) fn plans(
     world: &World,
     method: Method,
@@ -101,7 +101,7 @@ pub(crate) fn plans(
     robots.iter().enumerate().map(plan).collect()
 }
 
-/// Starts every robot's ring as planned; with `keeps_schedules` no schedule will change.
+/// Starts every robot's ring as planned; if `keeps_schedules`, no schedule changes later.
 pub(crate) fn start_all(
     world: &Arc<World>,
     plans: &[Plan],
@@ -129,7 +129,7 @@ pub(crate) fn start_all(
                 method.start(&RingStart { robot, plan, judging: *judging, flow: options.flow, random, now })
             }
             (_, Some(firing)) => planned(firing, robot, judging, robot.window, now),
-            // Every robot has one of the two.
+            // Every robot has either a plan or its own firing.
             (None, None) => continue,
         };
         let ring = ring.map_err(|error| SimulationError::start(index, *method, error))?;
@@ -145,10 +145,10 @@ pub(crate) fn start_all(
         let has_limits = plan.as_ref().is_some_and(keeps_limits);
         let limits = if has_limits { &robot.limits[..] } else { &[] };
         let hearing_of = |sensor: usize| {
-            // Two ticks less, since the clock rounds.
+            // Two ticks are subtracted, since the clock rounds.
             let refire = true_ns(soonest(sensor)).saturating_sub(2000);
             let hearing = Hearing::new(world, robot, sensor, method.echoes(), refire, true_ns);
-            // A later firing is deaf at first, too.
+            // A later firing is deaf at first too.
             let hearing = Hearing { refire: if steady { refire + hearing.blanking } else { refire }, ..hearing };
             match limits.get(sensor).map(|limits| true_ns(limits.window)) {
                 Some(window) => Hearing { window, refire: window.saturating_sub(2000), ..hearing },
@@ -171,13 +171,13 @@ pub(crate) fn start_all(
     Ok(rings)
 }
 
-/// Expected change of a sensor's good reading since its previous firing: `-2 d / c`, where `d` is the distance by which
-/// the robot carried it forward, by odometry; 0 without odometry.
+/// Returns the expected change of a sensor's good reading since its previous firing: `-2 d / c`, where `d` is the
+/// distance by which the robot's odometry says it moved forward; 0 without odometry.
 pub(crate) fn expected_change_us(robot: &Robot, sensor: u8, before: &Pose, fired: &Pose, speed_of_sound: f64) -> i32 {
     let Some(pose) = robot.sensors.get(usize::from(sensor)).filter(|_| robot.odometry) else { return 0 };
     let (before, fired) = (before * pose, fired * pose);
     let way = fired.translation.vector - before.translation.vector;
-    // Forward as it looked half way.
+    // Forward is the sensor's mean direction between the two firings.
     let heading = before.rotation.slerp(&fired.rotation, 0.5);
     let forward = way.x * heading.re + way.y * heading.im;
     (-2e6 * forward / speed_of_sound).round() as i32

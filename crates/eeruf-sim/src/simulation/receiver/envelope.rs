@@ -1,15 +1,15 @@
-//! Sounds of one firing that reach a receiver within a burst of each other: they add as phasors, and the envelope of
+//! Sounds of one firing that reach a receiver within a burst of each other. They add as phasors, and the envelope of
 //! their sum crosses the threshold.
 //!
 //! ```text
 //! p(t) = | sum_i A_i exp(j phi_i) r((t - t_i) / T) |,    r(s) = s up to 1, then 2 - s up to 2, else 0
 //! ```
 //!
-//! with the onsets `t_i`, a burst of length `T`, and phases `phi_i` of the carrier by the paths' travelling times. The
-//! envelope `r` of one sound rises evenly over the burst, as in [`Hearing::lateness`](super::Hearing::lateness), and
-//! falls in the same way: a burst through a receiver with a response of the same length. Between the moments where a
-//! sound begins, stops rising or ends, the phasor is linear and its square a parabola that opens upwards, so each such
-//! stretch crosses a threshold upwards at most once.
+//! The sounds have onsets `t_i`, a burst of length `T`, and phases `phi_i` of the carrier, given by the paths'
+//! travelling times. The envelope `r` of one sound rises evenly over the burst (see
+//! [`Hearing::lateness`](super::Hearing::lateness)) and falls likewise: a burst through a receiver with a response of
+//! the same length. Between the moments at which a sound begins, stops rising or ends, the phasor is linear. Its square
+//! is a parabola that opens upwards, so each such stretch crosses a threshold upwards at most once.
 
 use core::f64::consts::TAU;
 
@@ -34,10 +34,10 @@ pub(crate) struct Wave {
 /// A stretch in which the envelope of a sum rises. Amplitudes are relative to the threshold at full gain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Rise {
-    /// Nanoseconds from the onset of the first sound of the sum until it begins.
+    /// Time in nanoseconds from the onset of the first sound of the sum to the beginning of the stretch.
     pub(crate) after: u32,
-    /// The squares of the envelope where it begins and ends. The next stretch begins with the last number, so that no
-    /// threshold falls between two stretches.
+    /// The squares of the envelope at both ends of the stretch. The next stretch begins with the last number, so that
+    /// no threshold falls between two stretches.
     pub(crate) squares: [f32; 2],
     /// Duration in nanoseconds.
     lasts: f32,
@@ -47,8 +47,8 @@ pub(crate) struct Rise {
 }
 
 impl Rise {
-    /// Nanoseconds from the onset of the first sound until the envelope crosses a threshold; `None` if it does not
-    /// within this stretch.
+    /// Returns the time in nanoseconds from the onset of the first sound until the envelope crosses a threshold; `None`
+    /// if it does not cross it within this stretch.
     pub(super) fn crosses(&self, threshold: f64) -> Option<u64> {
         let ([from, to], wanted) = (self.squares.map(f64::from), threshold * threshold);
         if !(from < wanted && wanted <= to) {
@@ -56,7 +56,7 @@ impl Rise {
         }
         let (linear, curved) = (f64::from(self.linear), f64::from(self.curved));
         let root = (linear * linear + curved * (wanted - from)).max(0.0).sqrt();
-        // Of two ways to the same root the one without a difference.
+        // Use the form of the root that contains no difference.
         let share = if linear > 0.0 { (wanted - from) / (root + linear) } else { (root - linear) / curved };
         Some(u64::from(self.after) + (share.clamp(0.0, 1.0) * f64::from(self.lasts)) as u64)
     }
@@ -76,8 +76,8 @@ impl Envelope {
         self.waves.push(wave);
     }
 
-    /// Yields each stretch in which the sum of the pushed sounds, sent at this time, rises over the threshold at full
-    /// gain, with its receiver; then forgets them.
+    /// Passes on each stretch in which the sum of the pushed sounds, sent at this time, rises over the threshold at
+    /// full gain, with its receiver; then forgets the sounds.
     pub(crate) fn rises(&mut self, sent: u64, mut heard: impl FnMut(usize, Arrival)) {
         let mut waves = core::mem::take(&mut self.waves);
         waves.sort_unstable_by_key(|wave| (wave.receiver, wave.onset, wave.path));
@@ -93,7 +93,7 @@ impl Envelope {
         self.waves = waves;
     }
 
-    /// Sums sounds that overlap, first to last.
+    /// Sums overlapping sounds, given from first to last.
     fn sum(&mut self, waves: &[Wave], rise: u64, mut heard: impl FnMut(Arrival)) {
         self.knots.clear();
         self.knots.extend(waves.iter().flat_map(|wave| [0, rise, 2 * rise].map(|after| wave.onset + after)));
@@ -114,7 +114,7 @@ impl Envelope {
             let (at, loudest) = phasor(waves, from, rise);
             let next = phasor(waves, to, rise).0;
             let grows = [next[0] - at[0], next[1] - at[1]];
-            // What a module says of its level is the peak within the next burst.
+            // The level that a module reports is the peak within the next burst.
             let peak = self.knots.iter().zip(&self.squares).skip(place + 1);
             let peak =
                 peak.take_while(|(knot, _)| **knot <= from + rise).fold(squares[1], |peak, (_, it)| peak.max(*it));
@@ -136,7 +136,7 @@ impl Envelope {
     }
 }
 
-/// The phasor of a sum at a time, and the loudest of the sounds that have begun and not ended.
+/// Returns the phasor of a sum at a time, and the loudest of the sounds that have begun and not ended.
 fn phasor(waves: &[Wave], now: u64, rise: u64) -> ([f64; 2], usize) {
     let (mut sum, mut most, mut loudest) = ([0.0; 2], f32::NEG_INFINITY, 0);
     for (place, wave) in waves.iter().enumerate().take_while(|(_, wave)| wave.onset <= now) {

@@ -1,8 +1,8 @@
-//! One sensor's receiver: the sound in flight to it, the sound that it hears, and the causes.
+//! One sensor's receiver: the sound in flight to it, the sound that it hears, and the causes of its echoes.
 //!
-//! It hears the first arrival above the detection floor between blanking and the end of the window; one that reports
-//! several echoes goes on listening after a dead time of one burst. Arrivals that may still matter to a later firing
-//! are kept.
+//! The receiver hears the first arrival above the detection floor between blanking and the end of the window. If the
+//! sensor reports several echoes, it listens again after a dead time of one burst. Arrivals that may still matter to a
+//! later firing are kept.
 
 mod envelope;
 #[cfg(test)]
@@ -17,7 +17,7 @@ use crate::{
 };
 pub(crate) use envelope::{Envelope, Rise, Wave};
 
-/// No moment of any simulation.
+/// A time later than any moment of a simulation.
 pub(crate) const NEVER: u64 = u64::MAX;
 /// Marker of a burst from outside in [`Arrival::path`].
 pub(crate) const EXTERNAL: u32 = u32::MAX - 1;
@@ -39,14 +39,14 @@ pub(crate) struct Arrival {
     pub(crate) rise: Option<Rise>,
 }
 
-/// An echo passed to the ring. It knows its cause but does not reveal it.
+/// An echo passed to the ring. It contains its cause, which the ring cannot read.
 #[derive(Clone, Copy, Debug)]
 pub struct Echo {
     /// Time since the firing, by the robot's clock.
     pub(crate) t_echo_us: u32,
     pub(crate) arrival: Arrival,
-    /// True if it was sent at the moment at which the sensor fired: by the sensor itself, or by one that fired together
-    /// with it.
+    /// True if the sound was sent when the sensor fired: by the sensor itself, or by another that fired together with
+    /// it.
     pub(crate) of_this_firing: bool,
 }
 
@@ -62,13 +62,13 @@ impl Echo {
         Micros::new(self.t_echo_us)
     }
 
-    /// Returns the level over the receiver's threshold at full gain, in dB: as a module that reports amplitudes hears
-    /// it.
+    /// Returns the level over the receiver's threshold at full gain, in dB, which is the amplitude that a module
+    /// reports.
     pub const fn level_db(&self) -> f32 {
         self.arrival.level_over_threshold_db
     }
 
-    /// Returns the sound at another time, for filters that smooth.
+    /// Returns the echo with another time, for filters that smooth.
     #[must_use]
     pub const fn at(self, t_echo: Micros) -> Self {
         Self { t_echo_us: t_echo.as_micros(), ..self }
@@ -80,7 +80,7 @@ impl Echo {
 pub(crate) struct Hearing {
     pub(crate) blanking: u64,
     pub(crate) window: u64,
-    /// Time after a firing within which no later firing hears anything.
+    /// Time after a firing before which no later firing hears anything.
     pub(crate) refire: u64,
     /// Dead time after each echo of a sensor that reports several.
     pub(crate) dead_time: u64,
@@ -88,12 +88,12 @@ pub(crate) struct Hearing {
     pub(crate) gain: GainProfile,
     /// Time when the gain is full, in seconds.
     pub(crate) gain_full_s: f64,
-    /// Rise time of an echo, in nanoseconds, over a burst; 0 for a receiver that hears every echo at its onset.
+    /// Rise time of an echo over a burst, in nanoseconds; 0 for a receiver that hears every echo at its onset.
     pub(crate) rise_ns: f64,
 }
 
 impl Hearing {
-    /// Hearing of a robot's sensor whose clock measures `ns` of true time.
+    /// Computes the hearing of a robot's sensor; `ns` converts the robot's clock to true time.
     pub(crate) fn new(
         world: &World,
         robot: &Robot,
@@ -116,11 +116,11 @@ impl Hearing {
         }
     }
 
-    /// Time from the onset of a sound until it is heard, for an onset at a time after the firing; `None` if it is too
-    /// faint.
+    /// Returns the time from the onset of a sound until it is heard, for an onset at a time after the firing; `None` if
+    /// it is too faint.
     ///
-    /// A threshold detector hears an echo whose envelope rises evenly over its burst when it has reached the threshold:
-    /// at a level of `L` dB over that, `10^(-L / 20)` of a burst after the onset.
+    /// The envelope of an echo rises evenly over its burst, and a threshold detector hears the echo when the envelope
+    /// reaches the threshold: `10^(-L / 20)` of a burst after the onset, for a level of `L` dB over the threshold.
     #[inline]
     pub(crate) fn lateness(&self, level_over_threshold_db: f32, after: u64) -> Option<u64> {
         let level_db = match self.gain {
@@ -150,9 +150,9 @@ impl Hearing {
 /// One sensor's receiver.
 #[derive(Clone, Debug)]
 pub(crate) struct Receiver {
-    /// Time from which on an arrival would be heard; [`NEVER`] while the sensor does not listen.
+    /// Time from which an arrival would be heard; [`NEVER`] while the sensor does not listen.
     open: u64,
-    /// Time until which it listens: the end of the window, or the next arrival for a sensor that reports one echo.
+    /// Time until which the sensor listens: the end of the window, or the next arrival if it reports one echo.
     until: u64,
     /// Time up to which arrivals matter only to the present firing.
     own_until: u64,
@@ -162,7 +162,7 @@ pub(crate) struct Receiver {
     pub(crate) firings: u32,
     /// The next arrival that the receiver will hear.
     next: Option<Arrival>,
-    /// Arrivals to come, in no order.
+    /// Later arrivals, in no order.
     pending: Vec<Arrival>,
     heard: [Echo; MAX_ECHOES],
     heard_count: usize,
@@ -181,14 +181,14 @@ impl Receiver {
         heard_count: 0,
     };
 
-    /// Returns the time of the next arrival that the sensor will hear, as far as is known.
+    /// Returns the time of the next arrival that the sensor will hear, as known so far.
     #[inline]
     pub(crate) fn next_at(&self) -> u64 {
         self.next.map_or(NEVER, |next| next.at)
     }
 
-    /// Returns true if an arrival at about this time, plus or minus `slack`, can matter. Most cannot, and need not be
-    /// drawn.
+    /// Returns true if an arrival at about this time, plus or minus `slack`, can matter. Most cannot, and need no
+    /// random numbers.
     #[inline]
     pub(crate) fn cares(&self, at: u64, slack: u64) -> bool {
         let latest = at + slack;
@@ -206,7 +206,7 @@ impl Receiver {
         self.listen(now, hearing);
     }
 
-    /// Begins to listen; earlier echoes are still to be read.
+    /// Begins to listen; earlier echoes remain to be read.
     pub(crate) fn listen(&mut self, now: u64, hearing: &Hearing) {
         self.fired = now;
         self.firings += 1;
@@ -214,7 +214,7 @@ impl Receiver {
         self.until = now + hearing.window;
         self.own_until = now + hearing.refire;
         self.next = None;
-        // What still waits is handed in again, behind the old entries.
+        // Waiting arrivals are inserted again, behind the old entries.
         let held = self.pending.len();
         for index in 0..held {
             let arrival = self.pending[index];
@@ -223,7 +223,7 @@ impl Receiver {
         self.pending.drain(..held);
     }
 
-    /// Adds an arrival, which is never before the present moment.
+    /// Inserts an arrival, which is never before the present moment.
     #[inline]
     pub(crate) fn insert(&mut self, arrival: Arrival, hearing: &Hearing) {
         let late = hearing.late(&arrival, self.fired);
@@ -231,7 +231,7 @@ impl Receiver {
         let arrival = Arrival { at: arrival.onset + late.unwrap_or(begins), ..arrival };
         let in_window = arrival.at >= self.open && arrival.at <= self.until;
         if !in_window || late.is_none() {
-            // Whether a later firing hears it is decided then.
+            // A later firing decides if it hears the arrival.
             if arrival.at > self.own_until {
                 self.pending.push(arrival);
             }
@@ -249,7 +249,7 @@ impl Receiver {
         }
     }
 
-    /// Hears the next arrival, `t_echo_us` after firing by the robot's clock.
+    /// Hears the next arrival, `t_echo_us` after the firing by the robot's clock.
     pub(crate) fn hear(&mut self, t_echo_us: u32, hearing: &Hearing) {
         let Some(arrival) = self.next.take() else { return };
         if let Some(entry) = self.heard.get_mut(self.heard_count) {
@@ -269,8 +269,8 @@ impl Receiver {
                 continue;
             }
             let in_window = waiting.at >= self.open && waiting.at <= self.until;
-            // Of two at once the one handed in with the lower path number, so that the order in `pending` does not
-            // matter.
+            // Of two simultaneous arrivals the one with the lower path number is heard, so that the order in `pending`
+            // does not matter.
             let key = |arrival: &Arrival| (arrival.at, arrival.path, arrival.sent);
             let sooner = soonest.is_none_or(|soonest| key(&waiting) < key(&self.pending[soonest]));
             if in_window && sooner && hearing.late(&waiting, self.fired).is_some() {
@@ -281,14 +281,14 @@ impl Receiver {
         self.next = soonest.map(|index| self.pending.swap_remove(index));
     }
 
-    /// Loses the next arrival and stops listening, since the sensor's own line does not report it.
+    /// Removes the next arrival and stops listening, since the sensor's own line does not report it.
     pub(crate) fn lose(&mut self) -> Option<Arrival> {
         let lost = self.next.take();
         self.stop();
         lost
     }
 
-    /// Reports on this line an echo of another sensor, if there is room for it.
+    /// Reports an echo of another sensor on this line, if there is room for it.
     pub(crate) fn report(&mut self, t_echo_us: u32, arrival: Arrival, hearing: &Hearing) {
         if self.heard_count < hearing.echoes.min(MAX_ECHOES) {
             self.heard[self.heard_count] = Echo { t_echo_us, arrival, of_this_firing: false };
@@ -305,7 +305,7 @@ impl Receiver {
         }
     }
 
-    /// Echoes since the last firing, earliest first.
+    /// Returns the echoes since the last firing, earliest first.
     pub(crate) fn heard(&self) -> &[Echo] {
         self.heard.get(..self.heard_count).unwrap_or(&[])
     }

@@ -59,7 +59,7 @@ fn what_comes_too_late_for_one_firing_is_heard_by_the_next() {
 #[test]
 fn the_gain_of_the_receiver_grows_from_its_own_firing() {
     let linear = Hearing { gain: GainProfile::Linear, gain_full_s: 100e-9, ..HEARING };
-    // Half way the gain is 6 dB down.
+    // Half way to full gain, the gain is 6 dB lower.
     assert!(hears(&linear, &[(1050, 6.0)]).is_empty());
     assert_eq!(hears(&linear, &[(1050, 6.1)]), [1050]);
 }
@@ -68,17 +68,17 @@ fn the_gain_of_the_receiver_grows_from_its_own_firing() {
 #[test]
 fn threshold_detector_hears_faint_echoes_later() {
     let walking = Hearing { rise_ns: 20.0, ..HEARING };
-    // At the threshold a whole burst, 20 dB over it a tenth, and never before blanking ends.
+    // An echo is late by a whole burst at the threshold, by a tenth 20 dB over it. None is heard before blanking ends.
     assert_eq!(hears(&walking, &[(1050, 0.0)]), [1070]);
     assert_eq!(hears(&walking, &[(1050, 20.0)]), [1052]);
     assert_eq!(hears(&walking, &[(1009, 20.0)]), [1011]);
     assert!(hears(&walking, &[(1008, 200.0)]).is_empty());
     assert!(hears(&walking, &[(1099, 0.0)]).is_empty());
-    // The louder of two is heard first, though it begins later.
+    // The louder of two echoes is heard first, although it begins later.
     assert_eq!(hears(&walking, &[(1050, 0.0), (1055, 20.0)]), [1057]);
 }
 
-// An echo that is heard after its receiver has fired again is heard then.
+// An echo that crosses the threshold after its receiver has fired again is heard by the new firing.
 #[test]
 fn echo_after_the_next_firing_is_heard_then() {
     let walking = Hearing { rise_ns: 20.0, refire: 45, ..HEARING };

@@ -1,4 +1,4 @@
-//! Largest strength that a transducer sends into a cone, or hears from it, and the resulting range.
+//! Greatest strength with which a transducer sends into a cone or hears from it, and the resulting range.
 
 use super::reach::Reach;
 use super::{at_cos, nearest_cos};
@@ -28,20 +28,20 @@ impl Aim<'_> {
         self.beam == Beam::CutAt90
     }
 
-    /// The longest path, in metres, after which sound is heard.
+    /// Returns the longest path, in metres, after which sound is heard.
     pub(crate) fn longest_m(&self) -> f64 {
         self.reach.at(1.0)
     }
 
-    /// The longest path, in metres, after which sound may be heard that leaves within a cone and keeps
-    /// `reflection_gain` of its amplitude at walls. `axis` is the transducer's as seen in the cone's world.
+    /// Returns the longest path, in metres, after which sound may be heard that leaves within a cone and keeps
+    /// `reflection_gain` of its amplitude at walls. `axis` is the transducer's axis in the cone's world.
     #[inline]
     pub(crate) fn reach_m(&self, axis: Vector, left: Vector, right: Vector, reflection_gain: f64) -> f64 {
         let strongest = if cross(axis, left) >= 0.0 && cross(right, axis) >= 0.0 {
             1.0
         } else {
             let cos = |limit: Vector| axis.dot(&limit) / limit.norm();
-            // The nearer limit, where it is plain which one that is.
+            // Take the nearer limit, if it is clear which limit is nearer.
             let nearest = match (cross(axis, left) < 0.0, cross(right, axis) < 0.0) {
                 (true, false) => cos(left),
                 (false, true) => cos(right),
@@ -52,8 +52,8 @@ impl Aim<'_> {
         self.reach.at(strongest * reflection_gain * reflection_gain)
     }
 
-    /// Upper bound on the square of the amplitude sent towards a pole after reflections: without spreading, air, and
-    /// the part of the path beyond the pole.
+    /// Returns an upper bound on the square of the amplitude sent towards a pole after reflections, without spreading,
+    /// air, and the part of the path beyond the pole.
     pub(crate) fn towards_pole(&self, image: Point, axis: Vector, pole: &Pole, reflection_gain: f64) -> f64 {
         let out = pole.centre - image;
         let nearest = nearest_cos(out, out.norm(), pole.radius_m, axis);

@@ -1,4 +1,4 @@
-//! A bound on the echo of one pole, which rules out receivers before the reflection is solved.
+//! An upper bound on the echo of one pole, which excludes receivers before the reflection is solved.
 
 use super::{Audibility, nearest_cos};
 use crate::{geometry::Point, scene::Pole};
@@ -38,7 +38,7 @@ impl EnsonifiedPole<'_> {
         !self.is_too_faint(self.part * heard, far_m)
     }
 
-    /// Returns true if `A^2 s' s (s' + s)` is too little this far from the pole's centre.
+    /// Returns true if `A^2 s' s (s' + s)` is too small at this distance from the pole's centre.
     #[inline]
     fn is_too_faint(&self, part: f64, far_m: f64) -> bool {
         let after_m = (far_m - self.pole.radius_m).max(0.0);

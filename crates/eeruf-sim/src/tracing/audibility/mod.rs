@@ -1,8 +1,8 @@
-//! Early rejection of paths that are certainly too faint to be heard, from their directions, before anything expensive
-//! is computed.
+//! Early rejection of paths that are certainly too faint to be heard, by their directions, before any expensive
+//! computation.
 //!
-//! Every bound is an upper one, so that nothing audible is lost: the patterns by their envelope, a pole by its greatest
-//! echo, the air by its loss on a slightly shorter path.
+//! Every bound is an upper bound, so that no audible path is lost: the envelope of the patterns, the greatest echo of a
+//! pole, and the loss in the air on a slightly shorter path.
 
 mod aim;
 mod ensonified;
@@ -25,7 +25,7 @@ use reach::Reach;
 
 /// Number of equal steps of `sin(angle / 2)` in the envelope.
 const STEPS: usize = 1024;
-/// Steps per metre for the loss in the air, and their range.
+/// Steps per metre in the table of loss in the air, and the length of the table in metres.
 const STEPS_PER_M: f64 = 32.0;
 const REACH_M: f64 = 32.0;
 
@@ -43,7 +43,7 @@ pub(crate) struct Audibility {
 struct Tables {
     /// The emitter's and the receivers' patterns.
     pistons: [Piston; 2],
-    /// True if paths rise and fall, so that they may be less far off an axis than in the plan.
+    /// True if paths rise and fall, so that their angle off an axis may be smaller than in the plan.
     in_room: bool,
     /// The highest squares of the two patterns beyond each angle.
     departing: Vec<f64>,
@@ -51,7 +51,7 @@ struct Tables {
     /// The threshold amplitude, and the natural logarithm of the air's attenuation per metre, negative.
     floor: f64,
     loss_per_m: f64,
-    /// For each step of length, a lower bound on the square of the amplitude that would just be heard without loss in
+    /// For each step of length, a lower bound on the square of the amplitude that would be just audible without loss in
     /// the air.
     faint: Vec<f64>,
     /// Range of sound by its strength at departure.
@@ -59,7 +59,7 @@ struct Tables {
 }
 
 thread_local! {
-    /// Recently made tables, kept since making one takes longer than a short simulation.
+    /// Recently made tables, kept because making one takes longer than a short simulation.
     static KNOWN: RefCell<VecDeque<Arc<Tables>>> = const { RefCell::new(VecDeque::new()) };
 }
 /// Number of tables that are kept for each thread.
@@ -84,8 +84,8 @@ impl Tables {
 }
 
 impl Audibility {
-    /// Makes tables for an emitter and receivers with these patterns, in a flat scene or in a room, for the faintest
-    /// audible amplitude, and the natural logarithm of the air's attenuation per metre.
+    /// Makes tables for an emitter and receivers with these patterns, in a flat scene or in a room. `floor` is the
+    /// faintest audible amplitude, `loss_per_m` the natural logarithm of the air's attenuation per metre.
     pub(crate) fn new(pistons: [Piston; 2], in_room: bool, floor: f64, loss_per_m: f64) -> Self {
         let floor_and_loss = [floor, loss_per_m];
         let tables = KNOWN.with_borrow_mut(|known| {
@@ -100,7 +100,7 @@ impl Audibility {
         Self { tables, source: Vector::x(), receivers: Vec::new() }
     }
 
-    /// Returns true if it is for these patterns, and for this amplitude and loss.
+    /// Returns true if the tables are for these patterns, and for this amplitude and loss.
     pub(crate) fn is_for(&self, pistons: &[Piston; 2], in_room: bool, floor: f64, loss_per_m: f64) -> bool {
         self.tables.is_for(pistons, in_room, [floor, loss_per_m])
     }
@@ -112,7 +112,7 @@ impl Audibility {
         self.receivers.extend(receivers);
     }
 
-    /// Sound of the source by direction.
+    /// Returns the sound of the source by direction.
     pub(crate) fn of_source(&self) -> Aim<'_> {
         Aim {
             envelope: &self.tables.departing,
@@ -133,19 +133,19 @@ impl Audibility {
         })
     }
 
-    /// Upper bound on the square of the emitter's pattern, by the cosine of the angle off its axis.
+    /// Returns an upper bound on the square of the emitter's pattern, by the cosine of the angle off its axis.
     #[inline]
     fn sent(&self, cos: f64) -> f64 {
         at_cos(&self.tables.departing, cos)
     }
 
-    /// Returns the share of amplitude that a receiver's pattern leaves.
+    /// Returns an upper bound on the square of a receiver's pattern, by the cosine of the angle off its axis.
     #[inline]
     fn heard(&self, cos: f64) -> f64 {
         at_cos(&self.tables.arriving, cos)
     }
 
-    /// Least square of an amplitude that is heard after this length, without the air.
+    /// Returns the least square of an amplitude that is heard after this length, without loss in the air.
     #[inline]
     fn faint(&self, length_m: f64) -> f64 {
         let step = ((length_m * STEPS_PER_M) as usize).min(self.tables.faint.len().saturating_sub(1));
@@ -166,11 +166,11 @@ impl Audibility {
         let Some(axis) = self.receivers.get(receiver) else { return true };
         let (sent, least) =
             (self.sent(departure_cos) * reflection_gain * reflection_gain, self.faint(length_m) * length_m * length_m);
-        // Most fail by what the source sends there.
+        // Most paths fail by the strength at departure.
         sent >= least && sent * self.heard(towards.dot(axis) / length_m) >= least
     }
 
-    /// The cosines, in the plan, of a path's angles off the source's and a receiver's axis.
+    /// Returns the cosines, in the plan, of a path's angles off the source's and a receiver's axis.
     #[inline]
     pub(crate) fn cosines(&self, receiver: usize, [departure_rad, arrival_rad]: [f64; 2]) -> [f64; 2] {
         let towards = |angle: f64| Vector::new(libm::cos(angle), libm::sin(angle));
@@ -179,7 +179,7 @@ impl Audibility {
     }
 
     /// Returns true if a path of a room may be heard, given the [cosines](Self::cosines) of its plan, the cosine of its
-    /// elevation, and the share `vertical` that floor and ceiling leave.
+    /// elevation, and the share `vertical` of the amplitude that floor and ceiling leave.
     #[inline]
     pub(crate) fn may_hear_in_room(&self, plan: [f64; 2], cos_elevation: f64, vertical: f64, length_m: f64) -> bool {
         if self.receivers.is_empty() {
@@ -190,13 +190,13 @@ impl Audibility {
         sent >= least && sent * self.heard(plan[1] * cos_elevation) >= least
     }
 
-    /// The longest path, in metres, after which sound may be heard whose amplitude is at most `most` over its length.
+    /// Returns the longest audible path, in metres, of sound whose amplitude is at most `most` over its length.
     pub(crate) fn reach_m(&self, most: f64) -> f64 {
         self.tables.reach.at((most * most).min(1.0))
     }
 
-    /// Returns true if sound that leaves in the direction `out` may be heard after `least_m` or more, if its amplitude
-    /// is at most `most` over its length, without the patterns.
+    /// Returns true if sound that leaves in the direction `out` may be heard after `least_m` or more. Its amplitude
+    /// without the patterns is at most `most` over its length.
     #[inline]
     pub(crate) fn may_ensonify(&self, most: f64, out: Vector, least_m: f64) -> bool {
         if !(self.tables.floor > 0.0 && least_m > 0.0) {
@@ -206,8 +206,8 @@ impl Audibility {
         self.sent(cos) * most * most >= self.faint(least_m) * least_m * least_m
     }
 
-    /// Returns true if a path around an edge may be heard whose amplitude is at most `most` without the patterns; `out`
-    /// leads from the source to the edge, `home` from the receiver.
+    /// Returns true if a path around an edge may be heard, if its amplitude without the patterns is at most `most`.
+    /// `out` leads from the source to the edge, `home` from the receiver.
     #[inline]
     pub(crate) fn may_hear_around(&self, most: f64, receiver: usize, out: Vector, home: Vector, length_m: f64) -> bool {
         let Some(axis) = self.receivers.get(receiver) else { return true };
@@ -216,7 +216,7 @@ impl Audibility {
     }
 
     /// Returns true if a path over one pole may be heard, given the square of its amplitude after patterns and walls
-    /// and its least lengths before and after the pole: by
+    /// and its least lengths before and after the pole:
     ///
     /// ```text
     /// A^2 <= square (a / 2) / (s' s (s' + s))
@@ -239,7 +239,7 @@ impl Audibility {
         left >= self.faint(length_m) * before_m * between_m * after_m * length_m
     }
 
-    /// Sound that reaches a pole.
+    /// Returns the sound that reaches a pole.
     pub(crate) fn ensonify<'a>(&'a self, source: Point, pole: &'a Pole) -> EnsonifiedPole<'a> {
         let out = pole.centre - source;
         let far_m = out.norm();
@@ -249,14 +249,14 @@ impl Audibility {
     }
 }
 
-/// The highest squares of a pattern beyond each angle. An angle between two steps takes the value of the lower one,
-/// where the envelope is no less.
+/// Returns the highest squares of a pattern beyond each angle. An angle between two steps takes the value of the lower
+/// step, where the envelope is at least as high.
 ///
-/// In a room sound may leave behind a sensor's plane by less than the plan shows, up to right beside it.
+/// In a room, sound may leave at a smaller angle behind a sensor's plane than in the plan, down to right beside it.
 fn envelope(piston: &Piston, in_room: bool) -> Vec<f64> {
     let mut envelope = vec![0.0; STEPS + 1];
     let mut highest: f64 = 0.0;
-    // From behind to the front.
+    // Angles go from behind to the front.
     for step in (0..=STEPS).rev() {
         let pattern = piston.pattern(2.0 * libm::asin(step as f64 / STEPS as f64));
         highest = highest.max(pattern * pattern);
@@ -271,12 +271,12 @@ fn envelope(piston: &Piston, in_room: bool) -> Vec<f64> {
     envelope
 }
 
-/// The cosine of the least angle off an axis at which a point of a circle lies, for a circle whose centre is at `out`.
+/// Returns the cosine of the least angle off an axis of a point on a circle, whose centre is at `out`.
 #[inline]
 fn nearest_cos(out: Vector, far_m: f64, radius_m: f64, axis: Vector) -> f64 {
     let (cos, sin_half) = (out.dot(&axis) / far_m, radius_m / far_m);
     let cos_half = (1.0 - sin_half * sin_half).max(0.0).sqrt();
-    // Written so that a point inside the circle lies ahead.
+    // The comparison is written so that a point inside the circle lies ahead.
     if cos < cos_half { cos * cos_half + (1.0 - cos * cos).max(0.0).sqrt() * sin_half } else { 1.0 }
 }
 

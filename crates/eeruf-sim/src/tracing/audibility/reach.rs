@@ -2,31 +2,31 @@
 
 /// Number of steps in each octave of the square of an amplitude.
 const STEPS_BITS: u32 = 2;
-/// Number of octaves in the table; fainter sound gets the range of the faintest entry.
+/// Number of octaves in the table; fainter sound has the range of the faintest entry.
 const OCTAVES: usize = 64;
 
 /// Upper bounds on the longest path that is heard.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Reach {
-    /// Lengths by steps of the square of the amplitude at 1 m, from the strongest on; empty if everything is heard.
+    /// Longest audible paths in metres, by steps of the squared amplitude at 1 m, strongest first; empty for no limit.
     lengths_m: Vec<f64>,
 }
 
 impl Reach {
-    /// Ranges for the threshold amplitude, and the natural logarithm of the air's attenuation per metre.
+    /// Makes the ranges for the threshold amplitude and the natural logarithm of the air's attenuation per metre.
     pub(super) fn new(floor: f64, loss_per_m: f64) -> Self {
         if !(floor > 0.0) {
             return Self::default();
         }
         let steps = OCTAVES << STEPS_BITS;
-        // The step before the first stands for 1 itself.
+        // The step before the first one stands for 1 itself.
         Self { lengths_m: (0..=steps).map(|step| longest_m(square_at_most(step).sqrt(), floor, loss_per_m)).collect() }
     }
 
-    /// The longest path after which sound may be heard that leaves with this square of an amplitude, at most 1.
+    /// Returns the longest audible path of sound that leaves with this square of an amplitude, at most 1.
     #[inline]
     pub(super) fn at(&self, square: f64) -> f64 {
-        // Exponent and the first bits of the fraction number the steps, downwards from 1.
+        // The exponent and the first bits of the fraction number the steps, downwards from 1.
         let shift = 52 - STEPS_BITS;
         let below = (1f64.to_bits() >> shift).saturating_sub(square.max(0.0).to_bits() >> shift);
         self.lengths_m
@@ -36,12 +36,12 @@ impl Reach {
     }
 }
 
-/// The largest square that has this step.
+/// Returns the largest square of this step.
 fn square_at_most(step: usize) -> f64 {
     f64::from_bits(((1f64.to_bits() >> (52 - STEPS_BITS)) - step as u64 + 1) << (52 - STEPS_BITS))
 }
 
-/// The longest path on which an amplitude of `sent` at 1 m stays above the floor, slightly rounded up.
+/// Returns the longest path on which an amplitude of `sent` at 1 m stays above the floor, slightly rounded up.
 fn longest_m(sent: f64, floor: f64, loss_per_m: f64) -> f64 {
     let (mut near, mut far) = (0.0, sent / floor);
     while far - near > 1e-4 * far {
@@ -56,7 +56,7 @@ fn longest_m(sent: f64, floor: f64, loss_per_m: f64) -> f64 {
 mod tests {
     use super::*;
 
-    // Nothing that is heard is out of reach and little else is in it.
+    // All audible paths are within reach, and few others are.
     #[test]
     fn nothing_heard_is_out_of_reach() {
         let (floor, loss_per_m) = (8.19e-4, -0.189);

@@ -1,6 +1,6 @@
 use crate::*;
 
-/// A random room with thin or thick poles and a ring among them.
+/// Makes a random room with thin or thick poles and a ring among them.
 fn random(number: u64) -> (Scene, Vec<Pose>) {
     let mut random = Random::new(number);
     let corners = [[0.0, 0.0], [9.0, 0.0], [9.0, 3.0], [6.0, 3.0], [6.0, 5.0], [0.0, 5.0], [0.0, 0.0]];
@@ -19,14 +19,14 @@ fn random(number: u64) -> (Scene, Vec<Pose>) {
 
 #[test]
 fn nothing_that_is_heard_is_kept_back() {
-    // Nothing is heard from behind under the cut beam, and some under the continuous one.
+    // With the cut beam nothing is heard from behind, with the continuous beam some sound is.
     let [cut, continuous] = [Beam::CutAt90, Beam::Continuous].map(heard_as_weighed);
     assert!(cut.0 > 2000 && cut.1 > 500, "{cut:?}");
     assert!(continuous.2 > 100 && cut.2 == 0, "{cut:?} {continuous:?}");
 }
 
-/// Compares matrices with an evaluation of all paths one by one; returns how many paths are heard, over poles, and from
-/// behind.
+/// Compares matrices with an evaluation of all paths one by one; returns the numbers of paths that are heard, that are
+/// heard over poles, and that are heard from behind.
 fn heard_as_weighed(beam: Beam) -> (usize, usize, usize) {
     let transducer = Transducer { beam, ..Transducer::POLAROID_6500 };
     let mut behind = 0;
@@ -63,7 +63,7 @@ fn heard_as_weighed(beam: Beam) -> (usize, usize, usize) {
     (heard, over_poles, behind)
 }
 
-// Single poles are the same whether or not longer paths are sought.
+// Single poles are the same whether or not longer paths are searched for.
 #[test]
 fn single_poles_do_not_depend_on_longer_paths() {
     let mut seen = 0;

@@ -6,8 +6,8 @@ use crate::{
 };
 
 impl Scene {
-    /// The corners of a path in the plan: source, every bounce but those at floor and ceiling, receiver. `bounces` must
-    /// be those of a path between the two points that was found in this scene; for others the result is empty or
+    /// Returns the corners of a path in the plan: source, every bounce except at floor and ceiling, receiver. `bounces`
+    /// must belong to a path between the two points that was found in this scene; otherwise the result is empty or
     /// meaningless.
     ///
     /// ```
@@ -69,7 +69,7 @@ pub(super) struct Corners {
 }
 
 impl Corners {
-    /// The corners of a path that was found in a scene; see [`Scene::bounce_points`].
+    /// Returns the corners of a path that was found in a scene; see [`Scene::bounce_points`].
     pub(super) fn of(&mut self, scene: &Scene, source: Point, receiver: Point, bounces: &[Bounce]) -> Option<&[Point]> {
         self.corners.clear();
         if !bounces.iter().all(|bounce| matches!(bounce, Bounce::Wall(_))) {
@@ -101,8 +101,8 @@ impl Corners {
     }
 }
 
-/// The first and the last corner of each part of a path within which walls are only mirrors. Parts are separated by
-/// poles and edges, which make the sound spread again.
+/// Returns the first and the last corner of each part of a path in which walls are only mirrors. Poles and edges
+/// separate parts, because sound spreads again there.
 pub(super) fn parts(bounces: &[Bounce]) -> impl Iterator<Item = (usize, usize)> + '_ {
     let corners = (1..).zip(bounces).filter(|(_, bounce)| !matches!(bounce, Bounce::Wall(_))).map(|(corner, _)| corner);
     let last = bounces.len() + 1;

@@ -1,4 +1,4 @@
-//! Crosstalk matrix: all critical paths of a ring at one pose, from each emitter to each receiver, that are loud
+//! Crosstalk matrix: the critical paths of a ring at one pose, from each emitter to each receiver, that are loud
 //! enough.
 
 use super::audibility::Audibility;
@@ -13,8 +13,8 @@ use crate::{
     scene::{Bounce, Scene},
 };
 
-/// One path from an emitter to a receiver that is heard. With `emitter == receiver` it is the sensor's own echo;
-/// otherwise it is a critical path, one that can cause crosstalk.
+/// An audible path from an emitter to a receiver. With `emitter == receiver` it is the sensor's own echo; otherwise it
+/// is a critical path, one that can cause crosstalk.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CriticalPath {
     /// Index of the sensor that fires; 0 if there is only one emitter.
@@ -39,36 +39,36 @@ pub struct CriticalPath {
 }
 
 impl CriticalPath {
-    /// Returns true if it causes *direct* crosstalk: without a bounce or by a single reflection. All others are
+    /// Returns true if the path causes *direct* crosstalk: without a bounce or by a single reflection. All others are
     /// *indirect*.
     pub fn is_direct(&self) -> bool {
         self.order <= 1
     }
 }
 
-/// The input of a [`CrosstalkMatrix`]: the sensors and their hearing.
+/// The input of a [`CrosstalkMatrix`]: the sensors, their hearing and the scene.
 #[derive(Clone, Copy, Debug)]
 pub struct CrosstalkQuery<'a> {
-    /// Objects that the sound meets.
+    /// The scene in which the sound travels.
     pub scene: &'a Scene,
-    /// The transducers' places and headings in the scene; each heads along its pose's x axis.
+    /// The transducers' poses in the scene; each heads along its pose's x axis.
     pub sensors: &'a [Pose],
-    /// The kind of transducer of the receivers, and of the emitters unless others are given.
+    /// The transducer of the receivers, and of the emitters unless others are given.
     pub transducer: &'a Transducer,
     /// Limits up to which the sound is followed.
     pub limits: Limits,
     /// Threshold of hearing, compared with the [received level](Transducer::received).
     pub floor: f64,
-    /// The least amplitude of straight paths between two different sensors, which their mounting carries, relative to
-    /// two that face each other at the same distance; 0 if the patterns alone decide.
+    /// The least amplitude of straight paths between two different sensors, carried by their mounting, relative to two
+    /// sensors that face each other at the same distance; 0 if only the patterns count.
     pub coupling: f64,
-    /// The emitters' and the sensors' heights above the floor, in metres, where the scene has a
-    /// [room](Scene::room); [`DEFAULT_HEIGHT_M`](crate::DEFAULT_HEIGHT_M) for those that have none.
+    /// The emitters' and the sensors' heights above the floor, in metres, if the scene has a [room](Scene::room).
+    /// Missing heights are [`DEFAULT_HEIGHT_M`](crate::DEFAULT_HEIGHT_M).
     pub heights_m: [&'a [f64]; 2],
 }
 
 impl<'a> CrosstalkQuery<'a> {
-    /// A query without direct coupling, with all sensors at the same height.
+    /// Makes a query without direct coupling, with all sensors at the same height.
     pub const fn new(
         scene: &'a Scene,
         sensors: &'a [Pose],
@@ -86,10 +86,10 @@ pub struct CrosstalkMatrix {
     emitters: usize,
     sensors: usize,
     paths: Vec<CriticalPath>,
-    /// Start of each pair's paths; one more at the end.
+    /// Start of each pair's paths, with one more entry at the end.
     starts: Vec<u32>,
     bounces: Vec<Bounce>,
-    // Kept between computations only for their memory.
+    // These are kept between computations only for their memory.
     positions: Vec<Point>,
     found: Paths,
     straight: Paths,
@@ -97,22 +97,21 @@ pub struct CrosstalkMatrix {
 }
 
 impl CrosstalkMatrix {
-    /// An empty matrix, to be [computed](Self::compute).
+    /// Makes an empty matrix, to be [computed](Self::compute).
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// Traces each sensor once as the emitter and keeps the audible paths. The matrix is valid as long as nothing
-    /// moves.
+    /// Traces each sensor once as the emitter and keeps the audible paths. The matrix is valid until something moves.
     ///
     /// # Errors
-    /// Those of [`Tracer::trace`]; the matrix is empty then.
+    /// Errors of [`Tracer::trace`]; the matrix is then empty.
     pub fn compute(&mut self, tracer: &mut Tracer, query: &CrosstalkQuery<'_>) -> Result<(), PathsError> {
         self.fill(tracer, query.sensors, query.transducer, query, None)
     }
 
-    /// Computes the matrix like [`compute`](Self::compute) for a single emitter, which is number 0 and need not be
-    /// among the sensors: for a world in which things move from firing to firing.
+    /// Computes the matrix like [`compute`](Self::compute) for a single emitter, which has number 0 and need not be one
+    /// of the sensors. Use it for a world in which things move from firing to firing.
     ///
     /// # Errors
     /// See [`compute`](Self::compute).
@@ -125,7 +124,7 @@ impl CrosstalkMatrix {
         self.fill(tracer, core::slice::from_ref(emitter), query.transducer, query, None)
     }
 
-    /// Computes the matrix like [`compute`](Self::compute) for separate emitters of another kind, with the emitters'
+    /// Computes the matrix like [`compute`](Self::compute) for separate emitters of another kind. It uses the emitters'
     /// frequency and pattern of departure, and the sensors' pattern of arrival, gain and floor.
     ///
     /// # Errors
@@ -163,7 +162,7 @@ impl CrosstalkMatrix {
         let CrosstalkQuery { scene, sensors, transducer, limits, floor, coupling, heights_m } = *query;
         let air = scene.air();
         let departing = sending.piston(air);
-        // What arrives is of the emitter's frequency.
+        // Sound arrives with the emitter's frequency.
         let arriving = Transducer { frequency_hz: sending.frequency_hz, ..*transducer }.piston(air);
         (self.emitters, self.sensors) = (0, 0);
         self.paths.clear();
@@ -184,10 +183,10 @@ impl CrosstalkMatrix {
         for (emitter, pose) in emitters.iter().enumerate() {
             let heading_rad = pose.rotation.angle();
             audibility.aim(heading_rad, sensors.iter().map(|sensor| sensor.rotation * Vector::x()));
-            // The wave correction may add a little to what a pole returns.
+            // The wave correction may slightly raise a pole's echo.
             let audibility = if tracer.pole_waves { None } else { Some(&*audibility) };
             let source = Point::from(pose.translation.vector);
-            // What the mounting carries may be louder than the patterns say.
+            // The mounting may carry louder sound than the patterns allow.
             self.straight.clear();
             let source_m = heights_m[0].get(emitter).copied().unwrap_or(Heights::DEFAULT.source_m);
             let heights = Heights { source_m, receivers_m: heights_m[1] };
@@ -244,11 +243,11 @@ impl CrosstalkMatrix {
                 let others = range.map(|k| (&self.found, k, 0.0));
                 for (found, k, least) in straight.chain(others) {
                     let bare = found.amplitude[k];
-                    // The patterns only take away, and cost more than anything else here.
+                    // The patterns can only reduce the amplitude, and are the most expensive step here.
                     if transducer.received(bare, found.length_m[k], air) < floor {
                         continue;
                     }
-                    // Straight paths were found on their own.
+                    // Straight paths were found separately.
                     if coupling > 0.0 && least == 0.0 && found.order[k] == 0 {
                         continue;
                     }
@@ -287,7 +286,7 @@ impl CrosstalkMatrix {
     }
 
     /// Adds the paths of another matrix between some of this ring's sensors, given by their numbers here. Call
-    /// [`sort`](Self::sort) after the last.
+    /// [`sort`](Self::sort) after the last part.
     pub(crate) fn absorb(&mut self, part: &Self, emitters: &[usize], sensors: &[usize]) {
         let before = self.bounces.len() as u32;
         self.bounces.extend_from_slice(&part.bounces);
@@ -309,12 +308,12 @@ impl CrosstalkMatrix {
         (self.emitters, self.sensors) = (sensors, sensors);
     }
 
-    /// Number of sensors the ring has.
+    /// Number of sensors of the ring.
     pub fn sensors(&self) -> usize {
         self.sensors
     }
 
-    /// The paths from an emitter to a receiver, shortest first; none for sensors that do not exist.
+    /// Returns the paths from an emitter to a receiver, shortest first; none for sensors that do not exist.
     pub fn between(&self, emitter: usize, receiver: usize) -> &[CriticalPath] {
         if emitter >= self.emitters || receiver >= self.sensors {
             return &[];
@@ -328,18 +327,18 @@ impl CrosstalkMatrix {
         &self.paths
     }
 
-    /// The bounces of one of this matrix's paths, emitter to receiver.
+    /// Returns the bounces of one of this matrix's paths, emitter to receiver.
     pub fn bounces(&self, path: &CriticalPath) -> &[Bounce] {
         self.bounces.get(path.bounces[0] as usize..path.bounces[1] as usize).unwrap_or(&[])
     }
 
-    /// All bounces of all paths, for renumbering.
+    /// Returns all bounces of all paths, for renumbering.
     pub(crate) fn bounces_mut(&mut self) -> &mut [Bounce] {
         &mut self.bounces
     }
 }
 
-/// The change of paths whose ends have moved a little since they were found.
+/// Data for adapting paths whose ends have moved a little since they were found.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Moved {
     /// The emitters' and the receivers' patterns.
@@ -349,8 +348,8 @@ pub(crate) struct Moved {
 }
 
 impl Moved {
-    /// Returns a path adapted to new poses of its emitter and receiver: its length changes by their motion along it,
-    /// and its amplitude by the patterns in its new directions.
+    /// Returns a path adapted to new poses of its emitter and receiver. Its length changes by their motion along the
+    /// path, its amplitude by the patterns in its new directions.
     pub(crate) fn carried(&self, path: &CriticalPath, ends: [[&Pose; 2]; 2]) -> CriticalPath {
         let directions = [path.departure_rad, path.arrival_rad];
         let gone_m = |end: usize| {
@@ -372,7 +371,7 @@ impl Moved {
     }
 }
 
-/// The angle off a level axis of a direction with an azimuth from it and an elevation.
+/// Returns the angle between a level axis and a direction with an azimuth from the axis and an elevation.
 fn raised(azimuth_rad: f64, elevation_rad: f64) -> f64 {
     libm::acos((libm::cos(azimuth_rad) * libm::cos(elevation_rad)).clamp(-1.0, 1.0))
 }

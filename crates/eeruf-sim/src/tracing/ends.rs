@@ -2,7 +2,7 @@
 
 use crate::{geometry::Point, scene::Mesh};
 
-/// The triangles around a source and around each receiver, found once per query.
+/// The triangles around the source and around each receiver of a query, found once.
 #[derive(Debug, Default)]
 pub(crate) struct Ends {
     /// Triangles of the source, then of each receiver.

@@ -9,14 +9,14 @@ use crate::scene::Contact;
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum PathsError {
-    /// The source is not a number or lies out of the scene's reach.
+    /// The source is not a number or is out of the scene's reach.
     Source {
         /// The position in metres.
         at: [f64; 2],
         /// Distance from the walls to which the scene extends, in metres.
         reach_m: f64,
     },
-    /// A receiver is not a number or lies out of the scene's reach.
+    /// A receiver is not a number or is out of the scene's reach.
     Receiver {
         /// Index of the receiver.
         receiver: usize,
@@ -25,7 +25,7 @@ pub enum PathsError {
         /// Distance from the walls to which the scene extends, in metres.
         reach_m: f64,
     },
-    /// A source or a receiver is inside something solid.
+    /// A source or a receiver is inside a solid object.
     Inside {
         /// The position in metres.
         at: [f64; 2],
@@ -41,12 +41,12 @@ pub enum PathsError {
     },
     /// The requested order is above [`MAX_ORDER`].
     Order {
-        /// The order asked for.
+        /// The requested order.
         max_order: u32,
     },
     /// The requested longest path is not a positive number (infinity is allowed).
     Length {
-        /// The length asked for, in metres.
+        /// The requested length, in metres.
         max_length_m: f64,
     },
     /// The scene has more beams or paths of this order than fit into the budget.
@@ -54,7 +54,7 @@ pub enum PathsError {
         /// The budget that was exceeded.
         beams: usize,
     },
-    /// A robot's body touches something in a simulation, or a sensor that is not its own.
+    /// A robot's body touches an object, or a sensor of another robot, in a simulation.
     Body {
         /// The robot, counted from 0 and printed from 1.
         robot: usize,

@@ -1,5 +1,5 @@
-//! Paths of sound: every specular path from a source to its receivers, which of them are heard, and where they run. It
-//! uses `geometry`, `scene` and `acoustics`; time and noise belong to `simulation`.
+//! Paths of sound: every specular path from a source to its receivers, its audibility and its course. It uses
+//! `geometry`, `scene` and `acoustics`; time and noise belong to `simulation`.
 
 mod audibility;
 mod beam;

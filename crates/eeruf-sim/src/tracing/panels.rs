@@ -7,11 +7,11 @@ use crate::{
     scene::{Bounce, Scene},
 };
 
-/// The product of the reflections of a path's walls relative to endless walls, by Fresnel's integral over each. If
-/// several make a path louder, the gain is limited to that of one.
+/// Returns the product of the reflections of a path's walls relative to endless walls, by Fresnel's integral over each.
+/// If several walls make a path louder, the gain is limited to that of one.
 ///
-/// `corners` are those of the path, ends included. Each edge of a wall counts by its detour, with the path's other
-/// walls as mirrors, up to the path's ends or to the next pole, which makes the sound spread again.
+/// `corners` are the path's corners, ends included. Each edge of a wall counts by its detour. The path's other walls
+/// act as mirrors, up to the path's ends or to the next pole, where the sound spreads again.
 pub(super) fn share_of_walls(scene: &Scene, corners: &[Point], bounces: &[Bounce], wavelength_m: f64) -> f64 {
     let mut share = 1.0;
     for (start, end) in parts(bounces) {
@@ -34,9 +34,9 @@ pub(super) fn share_of_walls(scene: &Scene, corners: &[Point], bounces: &[Bounce
 struct Turn {
     wall: u32,
     at: Point,
-    /// The distances to the bounce and from it.
+    /// The vectors to the bounce and from it.
     legs: [Vector; 2],
-    /// Lengths of both parts, with the walls before and after as mirrors.
+    /// Lengths of the parts before and after the bounce, with the other walls as mirrors.
     whole_m: [f64; 2],
 }
 
@@ -44,7 +44,7 @@ impl Turn {
     fn share(&self, scene: &Scene, wavelength_m: f64) -> f64 {
         let wall = &scene.walls()[self.wall as usize];
         let along = (wall.to - wall.from).normalize();
-        // In the apex of a corner one of the legs has no length. The other says which way the sound goes.
+        // In the apex of a corner one of the legs has no length; the other leg gives the direction of the sound.
         let lengths_m = self.legs.map(|leg| leg.norm());
         let longer = usize::from(lengths_m[1] > lengths_m[0]);
         if !(lengths_m[longer] > 0.0) {
@@ -68,8 +68,8 @@ impl Turn {
         if square == 0.0 {
             return 0.0;
         }
-        // How much longer each part is, without the difference of two lengths: both legs make the same angle with the
-        // wall.
+        // Additional length of each part, computed without the difference of two lengths: both legs make the same angle
+        // with the wall.
         let longer_m = |length_m: f64, more: f64| more / ((length_m * length_m + more).max(0.0).sqrt() + length_m);
         longer_m(before_m, 2.0 * before_m * ahead + square) + longer_m(after_m, square - 2.0 * after_m * ahead)
     }

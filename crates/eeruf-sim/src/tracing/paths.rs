@@ -9,17 +9,17 @@ pub struct Paths {
     pub receiver: Vec<u32>,
     /// Length in metres.
     pub length_m: Vec<f64>,
-    /// The number of bounces, those at poles, floor and ceiling included.
+    /// Number of bounces, including those at poles, floor and ceiling.
     pub order: Vec<u32>,
     /// Direction in which the path leaves the source, in (-pi, pi].
     pub departure_rad: Vec<f64>,
-    /// Direction from which the path reaches the receiver, as seen by the receiver, in (-pi, pi].
+    /// Direction in which the receiver sees the path, in (-pi, pi].
     pub arrival_rad: Vec<f64>,
-    /// Amplitude relative to 1 m in free air, with the transducers' patterns left out.
+    /// Amplitude relative to 1 m in free air, without the transducers' patterns.
     pub amplitude: Vec<f64>,
     /// Elevations of departure and arrival; empty in a flat scene.
     pub(super) elevations_rad: Vec<[f64; 2]>,
-    /// End of each path's bounces.
+    /// End of each path's range in `bounces`.
     pub(super) ends: Vec<u32>,
     pub(super) bounces: Vec<Bounce>,
 }
@@ -30,12 +30,12 @@ impl Paths {
         self.length_m.len()
     }
 
-    /// Returns true if there is none.
+    /// Returns true if there are no paths.
     pub fn is_empty(&self) -> bool {
         self.length_m.is_empty()
     }
 
-    /// The bounces of a path from source to receiver; empty for one that does not exist.
+    /// The bounces of a path from source to receiver; empty for a path that does not exist.
     pub fn bounces(&self, path: usize) -> &[Bounce] {
         let end_of = |path: usize| self.ends.get(path).map_or(0, |end| *end as usize);
         let start = if path == 0 { 0 } else { end_of(path - 1) };
@@ -70,7 +70,7 @@ impl Paths {
         self.ends.reserve(more);
     }
 
-    /// Forgets the paths, keeps the memory.
+    /// Removes the paths and keeps the memory.
     pub fn clear(&mut self) {
         self.receiver.clear();
         self.length_m.clear();

@@ -1,9 +1,9 @@
-//! Reception at a moving receiver. Sound is emitted at one place and moment and meets the receiver at a later place: a
+//! Reception at a moving receiver. Sound is emitted at one place and moment, and meets the receiver at a later place: a
 //! quadratic equation for each image.
 
 use crate::geometry::{Point, Vector};
 
-/// Time and path length at which a moving receiver is reached.
+/// Time and path length at which sound meets a moving receiver.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reception {
     /// Time since the emission, in seconds.
@@ -15,8 +15,8 @@ pub struct Reception {
 /// Solves `|receiver + velocity t - image| = c t` for the first `t >= 0`.
 ///
 /// `image` is the source mirrored in the path's walls, `receiver` the position at emission, `velocity` in m/s and
-/// `speed_of_sound` in m/s. None if the receiver outruns the sound. The walls of a path are those for the position at
-/// emission: at a metre per second a receiver moves a few millimetres while the sound is on its way.
+/// `speed_of_sound` in m/s. `None` if the receiver outruns the sound. The path's walls are found for the position at
+/// emission: at 1 m/s a receiver moves a few millimetres while the sound is on its way.
 ///
 /// ```
 /// use eeruf_sim::{Point, Vector, reception};
@@ -31,8 +31,8 @@ pub fn reception(image: Point, receiver: Point, velocity: Vector, speed_of_sound
 
 /// Computes the reception from a path's length and direction of arrival instead of its image, in metres and radians.
 ///
-/// For a path over a pole the image moves a little with the receiver; the error is of the order of the pole's radius
-/// times the receiver's speed over that of sound.
+/// For a path over a pole the image moves a little with the receiver. The error is of the order of the pole's radius
+/// times the receiver's speed, divided by the speed of sound.
 pub fn reception_along(length_m: f64, arrival_rad: f64, velocity: Vector, speed_of_sound: f64) -> Option<Reception> {
     reception_at(length_m, [arrival_rad, 0.0], velocity, speed_of_sound)
 }
@@ -54,12 +54,12 @@ pub(crate) fn reception_at(
 /// Solves `(c^2 - v^2) t^2 - 2 (d . v) t - d^2 = 0`, with `d` the vector from the image to the receiver.
 fn solve(d2: f64, d_v: f64, v2: f64, c: f64) -> Option<Reception> {
     let a = c * c - v2;
-    // Subsonic receivers are always reached; written so that a NaN gives none.
+    // A subsonic receiver is always reached; the comparison is written so that a NaN gives none.
     if !(a > 0.0 && d2.is_finite() && d_v.is_finite()) {
         return None;
     }
     let root = (d_v * d_v + a * d2).sqrt();
-    // Of the two equal forms the one without cancellation.
+    // Of two equal forms use the one without cancellation.
     let time_s = if d_v >= 0.0 { (d_v + root) / a } else { d2 / (root - d_v) };
     Some(Reception { time_s, length_m: c * time_s })
 }

@@ -10,10 +10,10 @@ use crate::geometry::Point;
 use crate::scene::Scene;
 use crate::threads::on_all_cores;
 
-/// The paths of many sources at once, on all cores, in the order of the sources.
+/// Finds the paths of many sources at once, on all cores, in the order of the sources.
 ///
 /// # Errors
-/// Those of [`Tracer::trace`], for the first source that fails.
+/// The error of [`Tracer::trace`] for the first source that fails.
 pub fn paths_of_many(
     scene: &Scene,
     sources: &[Point],
@@ -28,8 +28,8 @@ pub fn paths_of_many(
 }
 
 impl Scene {
-    /// Every specular path from a source to each receiver, at [`DEFAULT_FREQUENCY_HZ`](super::DEFAULT_FREQUENCY_HZ);
-    /// see [`Tracer::trace`], which also reuses memory between queries.
+    /// Finds every specular path from a source to each receiver at
+    /// [`DEFAULT_FREQUENCY_HZ`](super::DEFAULT_FREQUENCY_HZ). Use [`Tracer::trace`] to reuse memory between queries.
     ///
     /// # Errors
     /// See [`Tracer::trace`].

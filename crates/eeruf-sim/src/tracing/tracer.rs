@@ -23,21 +23,21 @@ use crate::{
 pub struct Heights<'a> {
     /// The source's height.
     pub source_m: f64,
-    /// The receivers' heights; [`DEFAULT_HEIGHT_M`] for those without one.
+    /// The receivers' heights; [`DEFAULT_HEIGHT_M`] for receivers without one.
     pub receivers_m: &'a [f64],
 }
 
 impl Heights<'_> {
-    /// Heights that are all [`DEFAULT_HEIGHT_M`].
+    /// Heights of [`DEFAULT_HEIGHT_M`] for all.
     pub const DEFAULT: Self = Self { source_m: DEFAULT_HEIGHT_M, receivers_m: &[] };
 
-    /// The height of a receiver.
+    /// Returns the height of a receiver.
     pub(super) fn receiver_m(&self, receiver: usize) -> f64 {
         self.receivers_m.get(receiver).copied().unwrap_or(DEFAULT_HEIGHT_M)
     }
 }
 
-/// A finder of paths, with buffers, so that repeated queries do not allocate. Keep one per thread.
+/// A finder of paths. Its buffers are reused, so that repeated queries do not allocate. Keep one per thread.
 #[derive(Debug)]
 pub struct Tracer {
     /// The frequency for absorption and roughness, in Hz.
@@ -45,7 +45,7 @@ pub struct Tracer {
     /// True if poles reflect like rigid cylinders at this frequency instead of by geometric optics; see
     /// [`pole_wave_correction`](crate::pole_wave_correction). Off by default.
     pub pole_waves: bool,
-    /// True if poles thicker than the first Fresnel zone shade what lies behind them; see
+    /// True if poles thicker than the first Fresnel zone shade the space behind them; see
     /// [`Physics::shadows`](crate::Physics::shadows). Off by default.
     pub pole_shadows: bool,
     /// True if free ends of walls and corners that jut out diffract; see [`Physics::edges`](crate::Physics::edges). Off
@@ -54,8 +54,8 @@ pub struct Tracer {
     /// True if a wall reflects according to its width; see [`Physics::narrow_panels`](crate::Physics::narrow_panels).
     /// Off by default.
     pub narrow_panels: bool,
-    /// Length of the burst, in cycles. If [`narrow_panels`](Self::narrow_panels) is on, paths over a wall's two ends
-    /// that differ by less are heard as one. A [`CrosstalkMatrix`](crate::CrosstalkMatrix) sets it to the emitter's.
+    /// Length of the burst, in cycles. With [`narrow_panels`](Self::narrow_panels), paths over a wall's two ends that
+    /// differ by less are heard as one. A [`CrosstalkMatrix`](crate::CrosstalkMatrix) sets it to the emitter's.
     pub burst_cycles: u32,
     /// Largest number of bounces of a path with a pole, at most that of all other paths. The default is [`MAX_ORDER`].
     pub pole_order: u32,
@@ -89,12 +89,12 @@ impl Default for Tracer {
 }
 
 impl Tracer {
-    /// A tracer at [`DEFAULT_FREQUENCY_HZ`].
+    /// Makes a tracer at [`DEFAULT_FREQUENCY_HZ`].
     pub fn new() -> Self {
         Self::at(DEFAULT_FREQUENCY_HZ)
     }
 
-    /// A tracer for amplitudes at a frequency.
+    /// Makes a tracer for amplitudes at a frequency.
     pub fn at(frequency_hz: f64) -> Self {
         Self {
             frequency_hz,
@@ -116,7 +116,7 @@ impl Tracer {
         }
     }
 
-    /// Enables these effects on paths: shadows, edges and narrow panels.
+    /// Sets the effects on paths: shadows, edges and narrow panels.
     pub fn follow(&mut self, physics: &Physics) {
         self.pole_shadows = physics.shadows;
         self.edges = physics.edges;
@@ -131,13 +131,13 @@ impl Tracer {
     /// Writes every specular path from the source to each receiver into `paths`.
     ///
     /// A path may bounce at walls, at walls with one pole anywhere among them, or at two poles in turn. In a scene with
-    /// [floor and ceiling](Scene::room) all are [`DEFAULT_HEIGHT_M`] high; see [`trace_at`](Self::trace_at). A path
-    /// through the apex of a convex right-angle corner is found once. A receiver on top of the source does not hear the
-    /// direct path of length 0.
+    /// [floor and ceiling](Scene::room) source and receivers are [`DEFAULT_HEIGHT_M`] high; see
+    /// [`trace_at`](Self::trace_at). A path through the apex of a convex right-angle corner is found once. A receiver
+    /// on top of the source does not hear the direct path of length 0.
     ///
     /// # Errors
-    /// A position that is not a number, far outside or inside something solid, an order or a length out of range, a
-    /// tree that outgrows [`MAX_BEAMS`], or [`stop`](Self::stop). `paths` is empty then.
+    /// A position is not a number, out of reach or inside a solid; an order or a length is out of range; the tree
+    /// outgrows [`MAX_BEAMS`]; or [`stop`](Self::stop) was used. `paths` is then empty.
     pub fn trace(
         &mut self,
         scene: &Scene,
@@ -150,11 +150,11 @@ impl Tracer {
     }
 
     /// Traces like [`trace`](Self::trace), at given heights. In a room each path of the plan is heard directly and over
-    /// floor and ceiling, which together count as up to [`VERTICAL_ORDER`](super::VERTICAL_ORDER) bounces of
-    /// `limits.max_order`; where the scene is flat, heights do not matter.
+    /// floor and ceiling. These add up to [`VERTICAL_ORDER`](super::VERTICAL_ORDER) bounces, which count towards
+    /// `limits.max_order`. Heights do not matter in a flat scene.
     ///
     /// # Errors
-    /// Those of [`trace`](Self::trace), and for a height that is not between floor and ceiling.
+    /// Errors of [`trace`](Self::trace), and a height that is not between floor and ceiling.
     pub fn trace_at(
         &mut self,
         scene: &Scene,
@@ -186,7 +186,7 @@ impl Tracer {
         let at_poles = Limits { max_order: limits.max_order.min(self.pole_order), ..limits };
         self.grow(audibility, scene, source, receivers, limits, at_poles)?;
         if let Some(audibility) = audibility {
-            // In a room the plan does not know a path's length.
+            // In a room the path in the plan does not give the length.
             let by_length = matters.filter(|_| scene.room().is_none());
             self.tree.drop_faint(audibility, by_length, receivers);
         }
@@ -217,8 +217,8 @@ impl Tracer {
         Ok(())
     }
 
-    /// Runs the core only: finds the images that each receiver sees over walls and returns their number, unsorted and
-    /// with duplicates at corners. It is comparable with other image-source programs.
+    /// Runs only the core: finds the images that each receiver sees over walls and returns their number, unsorted and
+    /// with duplicates at corners. Use it for comparison with other image-source programs.
     ///
     /// # Errors
     /// See [`trace`](Self::trace).
@@ -251,7 +251,7 @@ impl Tracer {
             mesh: scene.mesh(),
             mirrors: scene.mirrors(),
             poles: scene.poles(),
-            // A pole that is the only bounce is looked for without beams.
+            // A pole that is the only bounce is searched for without beams.
             pole_triangles: if at_poles.max_order > 1 { &scene.pole_triangles } else { &[] },
             pole_order: at_poles.max_order,
             max_order: limits.max_order,
@@ -273,12 +273,12 @@ impl Tracer {
         if self.stop.is_stopped() { PathsError::Stopped } else { PathsError::Budget { beams: MAX_BEAMS } }
     }
 
-    /// Number of beams of the last query.
+    /// Returns the number of beams of the last query.
     pub fn beams(&self) -> usize {
         self.tree.beams.len()
     }
 
-    /// The natural logarithm of the air's attenuation per metre; negative.
+    /// Returns the natural logarithm of the air's attenuation per metre, which is negative.
     pub(crate) fn loss_per_m(&mut self, air: Air) -> f64 {
         match self.loss {
             Some((known, frequency_hz, loss_per_m)) if known == air && frequency_hz == self.frequency_hz => loss_per_m,
@@ -310,7 +310,7 @@ fn check(scene: &Scene, source: Point, receivers: &[Point], limits: Limits) -> R
     }
 }
 
-/// Checks that a point is in the open: in no pole, no pillar, and not outside the room.
+/// Checks that a point is free: not in a pole or a pillar, and not outside the room.
 fn check_free(scene: &Scene, at: Point, triangles: &[u32]) -> Result<(), PathsError> {
     let pole = scene.poles().iter().position(|pole| (at - pole.centre).norm() < pole.radius_m);
     let what = match pole {
@@ -321,7 +321,7 @@ fn check_free(scene: &Scene, at: Point, triangles: &[u32]) -> Result<(), PathsEr
     Err(PathsError::Inside { at: [at.x, at.y], what })
 }
 
-/// Checks that source and receivers are between floor and ceiling, if there are any.
+/// Checks that source and receivers are between floor and ceiling, if the scene has them.
 fn check_heights(scene: &Scene, receivers: usize, heights: Heights<'_>) -> Result<(), PathsError> {
     let Some(room) = scene.room() else { return Ok(()) };
     let all = core::iter::once(heights.source_m).chain((0..receivers).map(|receiver| heights.receiver_m(receiver)));

@@ -3,7 +3,7 @@
 
 use crate::scene::{Bounce, Room};
 
-/// Largest number of bounces at floor and ceiling, a choice: with a ceiling at 2.6 m a fifth is too faint.
+/// Largest number of bounces at floor and ceiling, a choice: with a ceiling at 2.6 m a fifth bounce is too faint.
 pub const VERTICAL_ORDER: u32 = 4;
 
 /// One vertical path between two heights.
@@ -18,7 +18,7 @@ pub(super) struct Way {
 }
 
 impl Way {
-    /// All vertical paths with at most this many bounces, fewest first.
+    /// Finds all vertical paths with at most this many bounces, fewest first.
     pub(super) fn between(room: &Room, source_m: f64, receiver_m: f64, most: u32, ways: &mut Vec<Self>) {
         ways.clear();
         ways.push(Self { rise_m: receiver_m - source_m, order: 0, first: Bounce::Floor });
@@ -34,13 +34,13 @@ impl Way {
         }
     }
 
-    /// The bounces, from source to receiver.
+    /// Returns the bounces, from source to receiver.
     pub(super) fn bounces(self) -> impl Iterator<Item = Bounce> {
         let other = if self.first == Bounce::Floor { Bounce::Ceiling } else { Bounce::Floor };
         (0..self.order).map(move |k| if k.is_multiple_of(2) { self.first } else { other })
     }
 
-    /// Share of the amplitude after floor and ceiling, at a wave number and a sine of the elevation.
+    /// Returns the share of the amplitude after floor and ceiling, at a wave number and a sine of the elevation.
     pub(super) fn reflected(self, room: &Room, wave_number: f64, sin_elevation: f64) -> f64 {
         let each = self.bounces().map(|bounce| {
             let material = if bounce == Bounce::Ceiling { &room.ceiling } else { &room.floor };
@@ -49,7 +49,7 @@ impl Way {
         each.product()
     }
 
-    /// The elevations in radians of departure and arrival of a path with this length in the plan, upwards positive.
+    /// Returns the elevations of departure and arrival in radians, upwards positive, by the path's length in the plan.
     pub(super) fn elevations(self, plan_m: f64) -> [f64; 2] {
         let up = libm::atan2(self.rise_m, plan_m);
         [if self.order.is_multiple_of(2) { up } else { -up }, -up]
@@ -66,7 +66,7 @@ mod tests {
         let (source_m, receiver_m) = (0.4, 1.1);
         let mut ways = Vec::new();
         Way::between(&room, source_m, receiver_m, 9, &mut ways);
-        // Images of a slab: 2 n H + z after an even number of bounces, 2 n H - z after an odd one.
+        // A slab has images at 2 n H + z after an even number of bounces, at 2 n H - z after an odd number.
         let mut expected: Vec<f64> = (-2..=2).map(|n| receiver_m - (5.0 * f64::from(n) + source_m)).collect();
         expected.extend((-1..=2).map(|n| receiver_m - (5.0 * f64::from(n) - source_m)));
         let mut found: Vec<f64> = ways.iter().map(|way| way.rise_m).collect();
@@ -82,7 +82,7 @@ mod tests {
         let mut ways = Vec::new();
         Way::between(&Room::DEFAULT, 0.3, 0.5, 2, &mut ways);
         let signs: Vec<_> = ways.iter().map(|way| way.elevations(1.0).map(f64::signum)).collect();
-        // Straight up; floor; ceiling; floor then ceiling; ceiling then floor.
+        // The order is straight; floor; ceiling; floor then ceiling; ceiling then floor.
         assert_eq!(signs, [[1.0, -1.0], [-1.0, -1.0], [1.0, 1.0], [-1.0, 1.0], [1.0, -1.0]]);
     }
 }

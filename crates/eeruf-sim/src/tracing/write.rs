@@ -1,5 +1,5 @@
-//! Writes the found paths in order, with directions and amplitudes; in a room each path of the plan once for each
-//! vertical path between the heights.
+//! Writing of the found paths in order, with directions and amplitudes. In a room each path of the plan is written once
+//! for each vertical path between the heights.
 
 use super::audibility::Audibility;
 use super::limits::{Limits, Matters};
@@ -25,7 +25,7 @@ struct Course {
     angles: [f64; 2],
 }
 
-/// A path of a room that waits for its place in the order.
+/// A path of a room that waits for its position in the order.
 #[derive(Clone, Copy, Debug)]
 struct Waiting {
     receiver: u32,
@@ -94,7 +94,7 @@ impl Tracer {
         self.corners = corners;
     }
 
-    /// Writes the paths of a room.
+    /// Writes the paths of a scene in a room.
     ///
     /// Between floor and ceiling, sound of wave number `k` at an elevation `e` behaves in the plan like sound of wave
     /// number `k cos e` and spreads by `cos e` more; the air attenuates it over its whole length.
@@ -179,7 +179,7 @@ impl Tracer {
                 });
             }
         }
-        // A sensor hears itself straight over floor and ceiling, of which the plan knows nothing.
+        // A sensor hears itself straight over floor and ceiling, on paths that are not in the plan.
         for (receiver, _) in receivers.iter().enumerate().filter(|(_, at)| (*at - source).norm() <= TOUCH_M) {
             Way::between(room, heights.source_m, heights.receiver_m(receiver), limits.max_order, ways);
             for &way in ways.iter().filter(|way| (TOUCH_M..=limits.max_length_m).contains(&way.rise_m.abs())) {
@@ -197,7 +197,7 @@ impl Tracer {
                 });
             }
         }
-        // Of equally long ones those stay first that were found first.
+        // Paths of equal length stay in the order in which they were found.
         waiting.sort_by(|a, b| a.receiver.cmp(&b.receiver).then(a.length_m.total_cmp(&b.length_m)));
         paths.reserve(waiting.len());
         for path in waiting.iter() {
@@ -213,7 +213,7 @@ impl Tracer {
         self.corners = turns;
     }
 
-    /// Share of the amplitude in the plan after spreading, walls, poles and edges.
+    /// Returns the share of the amplitude in the plan after spreading, walls, poles and edges.
     #[inline]
     fn spread(
         &self,
@@ -241,7 +241,7 @@ impl Tracer {
         }
     }
 
-    /// The wave correction of a path's poles, if it is enabled.
+    /// Returns the wave correction of a path's poles, if it is enabled; otherwise 1.
     fn pole_waves(&self, path: &PolePath, bounces: &[Bounce], scene: &Scene, wave_number: f64) -> f64 {
         if !self.pole_waves {
             return 1.0;

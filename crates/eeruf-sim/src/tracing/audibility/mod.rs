@@ -122,7 +122,7 @@ impl Audibility {
         }
     }
 
-    /// Hearing of a receiver by direction, as if sound went the other way. `None` if everything counts as heard.
+    /// Returns a receiver's hearing by direction, as for sound that it sends; `None` if everything counts as heard.
     pub(crate) fn of_receiver(&self, receiver: usize) -> Option<Aim<'_>> {
         let axis = *self.receivers.get(receiver).filter(|_| self.tables.floor > 0.0)?;
         Some(Aim {

@@ -1,10 +1,10 @@
-//! The beam tree: every sequence of walls along which some of the source's sound really passes.
+//! The beam tree: every sequence of walls over which some of the source's sound really passes.
 //!
-//! A beam is an image of the source and a cone that looks through one visible piece of wall. It is walked through the
-//! triangles of the mesh; a corner inside the cone splits it, a wall turns it into a beam of the next order. The limits
-//! of a cone always point at mirrored *corners* of the scene, never at computed points of intersection, so that errors
-//! do not accumulate. Each node is a piece of wall that is really visible, and the tree grows about quadratically with
-//! the order.
+//! A beam is an image of the source and a cone that looks through one visible piece of wall. It is followed through the
+//! triangles of the mesh: a corner inside the cone splits it, and a wall turns it into a beam of the next order. The
+//! limits of a cone always point at mirrored *corners* of the scene, never at computed points of intersection, so that
+//! errors do not accumulate. Each node is a piece of wall that is really visible, and the tree grows about
+//! quadratically with the order.
 
 mod growth;
 mod readout;
@@ -25,21 +25,21 @@ pub(crate) struct Beam {
     /// The limits of the beam's cone.
     pub(super) left: Vector,
     pub(super) right: Vector,
-    /// The last wall's side of the mesh, by which the beam enters.
+    /// The last wall's side of the mesh, through which the beam enters.
     pub(super) gate: u32,
     /// The parent beam; `NONE` for the source's own.
     pub(crate) parent: u32,
     /// The last wall.
     pub(crate) wall: u32,
     pub(crate) order: u32,
-    /// Directions in the image's world are `turn + d` after an even number of bounces, `turn - d` after an odd one,
-    /// with `d` the direction of departure.
+    /// Turn of the image's world: the direction of departure `d` is `turn + d` there after an even number of bounces,
+    /// `turn - d` after an odd number.
     pub(crate) turn: f64,
     /// The product of the walls' reflections.
     pub(crate) reflection_gain: f64,
     /// Heading of the source in the image's world, if it matters.
     pub(crate) axis: Vector,
-    /// Length beyond which no path of this beam is heard or wanted.
+    /// Length beyond which no path of this beam is heard or within the query's limit.
     pub(super) reach_m: f64,
 }
 
@@ -53,7 +53,7 @@ pub(crate) struct VisibleImage {
     pub(crate) reflection_gain: f64,
     pub(crate) receiver: u32,
     pub(crate) order: u32,
-    /// The beam before the last wall, or `NONE` when there was no wall.
+    /// The beam before the last wall, or `NONE` without a wall.
     pub(crate) parent: u32,
     /// The last wall.
     pub(crate) wall: u32,
@@ -61,7 +61,7 @@ pub(crate) struct VisibleImage {
     pub(super) axis: Vector,
 }
 
-/// A cone that passes a triangle that contains a pole.
+/// A cone through a triangle that contains a pole.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PoleCone {
     pub(crate) pole: u32,
@@ -72,14 +72,14 @@ pub(crate) struct PoleCone {
 }
 
 impl PoleCone {
-    /// Returns true if a point, relative to the beam's image, is in the cone, its limits included.
+    /// Returns true if a point, relative to the beam's image, is in the cone, limits included.
     pub(crate) fn holds(&self, ahead: Vector) -> bool {
         cone_holds(self.left, self.right, ahead)
     }
 }
 
-/// Returns true if a point is in a cone, limits included, with a relative tolerance that makes a path through the apex
-/// of a corner visible to both walls.
+/// Returns true if a point is in a cone, limits included. A relative tolerance makes a path through the apex of a
+/// corner visible to both walls.
 #[inline(always)]
 pub(super) fn cone_holds(left: Vector, right: Vector, ahead: Vector) -> bool {
     let (l, r) = (cross(ahead, left), cross(right, ahead));

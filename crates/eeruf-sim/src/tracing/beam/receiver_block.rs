@@ -1,4 +1,4 @@
-//! All receivers as one block of numbers, for dropping beams of the last order that meet none of them.
+//! All receivers as one block of numbers, to drop beams of the last order that meet none of them.
 
 use crate::geometry::{Point, SAME_DIRECTION, TOUCH_M, Vector, cross};
 
@@ -27,7 +27,7 @@ impl ReceiverBlock {
     pub(super) fn fill(&mut self, receivers: &[Point]) {
         self.all = receivers.len() > BLOCK;
         self.enclose(receivers);
-        // Filled up with repetitions to whole groups of four, which the compiler turns into vector instructions.
+        // Repetitions fill the block up to groups of four, which the compiler turns into vector instructions.
         self.len = if self.all { 0 } else { receivers.len().next_multiple_of(4) };
         for k in 0..self.len {
             let receiver = receivers[k.min(receivers.len() - 1)];
@@ -44,18 +44,18 @@ impl ReceiverBlock {
         self.radius = far.fold(0.0, f64::max) * (1.0 + 1e-9) + TOUCH_M;
     }
 
-    /// Returns true if all receivers are certainly farther from a point.
+    /// Returns true if all receivers are certainly farther from a point than a length.
     #[inline]
     pub(super) fn is_beyond(&self, from: Point, length_m: f64) -> bool {
         let least_m = length_m + self.radius;
         (self.middle - from).norm_squared() > least_m * least_m
     }
 
-    /// Returns true if any receiver may be in the cone; if it returns false, none is.
+    /// Returns true if any receiver may be in the cone; if false, certainly none is.
     #[inline]
     pub(super) fn may_see(&self, image: Point, left: Vector, right: Vector) -> bool {
         let ahead = self.middle - image;
-        // The sum of a vector's coordinates is no less than its length.
+        // The sum of the absolute coordinates of a vector is no less than its length.
         let reach = |limit: Vector| -self.radius * (limit.x.abs() + limit.y.abs());
         if cross(ahead, left) < reach(left) || cross(right, ahead) < reach(right) {
             return false;

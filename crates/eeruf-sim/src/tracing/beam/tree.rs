@@ -13,11 +13,11 @@ use crate::{
 const BEAMS_PER_LOOK: usize = 256;
 /// Marker of a target that is a pole.
 const POLE: u32 = 1 << 31;
-/// A point to be found in a triangle, in a list for each triangle.
+/// A point to be found in a triangle; each triangle has a list of them.
 #[derive(Clone, Copy, Debug)]
 struct Target {
     at: Point,
-    /// A receiver, or a pole with its bit set.
+    /// The index of a receiver, or of a pole with the bit [`POLE`] set.
     what: u32,
     triangle: u32,
     next: u32,
@@ -37,11 +37,11 @@ struct Flight<'a> {
     beam: &'a Beam,
     /// The beam's number in the tree.
     index: u32,
-    /// True if walls reflect the beam, as they do except for the last order.
+    /// True if walls reflect the beam: for all orders except the last.
     reflects: bool,
 }
 
-/// The tree and its buffers; used again and again without allocating.
+/// The tree and its buffers, which are reused without allocating.
 #[derive(Debug, Default)]
 pub(crate) struct BeamTree {
     pub(crate) beams: Vec<Beam>,
@@ -55,8 +55,8 @@ pub(crate) struct BeamTree {
 }
 
 impl BeamTree {
-    /// Grows the tree of a source in these triangles. Returns true if it is complete: the budget was not spent, and the
-    /// work not stopped.
+    /// Grows the tree of a source in these triangles. Returns true if it is complete: the budget was not exceeded, and
+    /// the work was not stopped.
     pub(crate) fn grow(
         &mut self,
         growth: &Growth<'_>,
@@ -127,7 +127,7 @@ impl BeamTree {
         true
     }
 
-    /// Leaves the source's own triangles (two on a side, a fan on a corner) through their sides.
+    /// Starts from the source's own triangles (two at a side, a fan at a corner) through their sides.
     fn leave(&mut self, growth: &Growth<'_>, source: Point, triangles: &[u32]) {
         let beam = self.beams[0];
         let flight = Flight { growth, beam: &beam, index: 0, reflects: growth.max_order > 0 };
@@ -135,7 +135,7 @@ impl BeamTree {
             let mut target = self.heads[triangle as usize];
             while target != NONE {
                 let Target { at, what, next, .. } = self.targets[target as usize];
-                // All around the source lies in its triangle, so there is no cone to test.
+                // The source sees every point of its triangle, so there is no cone to test.
                 let ahead = at - source;
                 if what & POLE != 0 {
                     for (left, right) in [(Vector::y(), -Vector::y()), (-Vector::y(), Vector::y())] {
@@ -148,7 +148,7 @@ impl BeamTree {
             }
             for side in growth.mesh.sides(triangle) {
                 let (left, right) = (side.left - source, side.right - source);
-                // A side through the source shows it nothing; what is behind it belongs to a triangle of the list too.
+                // A side through the source hides everything behind it, which belongs to another triangle of the list.
                 if cross(right, left) <= SAME_DIRECTION * (left - right).norm() * (left.norm() + right.norm()) {
                     continue;
                 }
@@ -169,7 +169,7 @@ impl BeamTree {
         let reach2 = beam.reach_m * beam.reach_m;
         while let Some(Cone { mut gate, mut left, right }) = self.stack.pop() {
             for step in 1_u32.. {
-                // Now and then, so that it costs nothing where walls are near.
+                // The check is made only sometimes, so that it costs nothing if walls are near.
                 if step.is_multiple_of(4) && is_beyond(gates, gate, beam.image, reach2) {
                     break;
                 }
@@ -199,7 +199,7 @@ impl BeamTree {
         }
     }
 
-    /// Passes an exit: into the next triangle, which it returns, or to a wall, where the beam of the next order starts.
+    /// Passes an exit: returns the next triangle, or at a wall starts the beam of the next order and returns `None`.
     #[inline(always)]
     fn leave_through(&mut self, flight: &Flight<'_>, exit: Exit, left: Vector, right: Vector) -> Option<u32> {
         match exit.beyond() {
@@ -298,8 +298,8 @@ impl BeamTree {
     }
 }
 
-/// Returns true if the line of a gate, and so all that lies behind it, is farther from a point than a length, given as
-/// its square.
+/// Returns true if the line of a gate, and so everything behind it, is farther from a point than a length. `length2` is
+/// the square of the length.
 #[inline]
 fn is_beyond(gates: &[Gate], gate: u32, from: Point, length2: f64) -> bool {
     let first = gate - gate % 3;

@@ -1,5 +1,5 @@
-//! Paths over the two ends of one wall that differ by less than a burst: they are heard as one, by Fresnel's integral
-//! between them.
+//! Merging of paths over the two ends of one wall that differ by less than a burst: they are heard as one, by Fresnel's
+//! integral between them.
 
 use super::{EdgePath, EdgeQuery, EdgeSearch, MOST};
 use crate::{
@@ -9,7 +9,7 @@ use crate::{
 };
 
 impl EdgeSearch {
-    /// Removes paths over the ends of a surface that also reflects, if they are later by less than a burst: the
+    /// Removes paths over the ends of a surface that also reflects, if they arrive less than a burst later: the
     /// reflection includes them. If the point of reflection lies beside the surface, it merges the two paths into one.
     pub(super) fn join(&mut self, query: &EdgeQuery<'_>, burst_m: f64) {
         let EdgeQuery { scene, receivers, ends, .. } = *query;
@@ -64,7 +64,7 @@ impl EdgeSearch {
                     let wavelength_m = core::f64::consts::TAU / query.wave_number;
                     let detours = lengths_m.map(|length_m| (length_m - seen.length_m) / wavelength_m);
                     let spread = panel_share(detours, true) / near.length_m;
-                    // Both sides of a corner may be seen beside their reflections.
+                    // Both surfaces of a corner may be seen beside their points of reflection.
                     match joined[first..].iter_mut().find(|path| path.edge == near.edge) {
                         Some(path) => path.spread = (path.spread + spread).min(MOST * LOUDEST_PANEL / near.length_m),
                         None => joined.push(EdgePath { spread, unbounded: None, ..near }),
@@ -82,9 +82,9 @@ impl EdgeSearch {
 struct Seen {
     /// Point of reflection, as the distance in metres from the surface's point along its direction.
     point_m: f64,
-    /// Length of the path by that point.
+    /// Length of the path over the point of reflection.
     length_m: f64,
-    /// True if the surface contains that point.
+    /// True if the surface contains the point of reflection.
     is_reflected: bool,
 }
 

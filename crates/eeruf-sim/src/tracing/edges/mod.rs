@@ -23,14 +23,14 @@ pub(crate) struct EdgePath {
     pub(crate) arrival_rad: f64,
     /// Share of the amplitude after diffraction and spreading, at the wave number of the query.
     pub(crate) spread: f64,
-    /// Share and wave number without the share's upper bound; `None` for two paths heard as one.
+    /// Share without the upper bound, and its wave number; `None` for two paths heard as one.
     unbounded: Option<[f64; 2]>,
-    /// The edge, for recognising duplicates.
+    /// The position of the edge, for recognising duplicates.
     pub(crate) at: Point,
 }
 
 impl EdgePath {
-    /// Share of the amplitude at another wave number: Keller's coefficient falls with its square root.
+    /// Returns the share of the amplitude at another wave number: Keller's coefficient falls with its square root.
     pub(crate) fn spread_at(&self, wave_number: f64) -> f64 {
         match self.unbounded {
             Some([unbounded, at]) if wave_number != at => {
@@ -42,7 +42,7 @@ impl EdgePath {
     }
 }
 
-/// A search for such paths, with buffers.
+/// A search for paths around edges, with buffers.
 #[derive(Debug, Default)]
 pub(crate) struct EdgeSearch {
     pub(crate) found: Vec<EdgePath>,
@@ -50,10 +50,10 @@ pub(crate) struct EdgeSearch {
     triangles: Vec<u32>,
     /// The edges to be examined, in order.
     wanted: Vec<u32>,
-    // Kept between questions for their memory.
+    // These are kept between queries for their memory.
     places: Vec<u32>,
     surfaces: Vec<u32>,
-    /// For each edge its place among the examined ones, or [`NONE`].
+    /// For each edge its index among the examined edges, or [`NONE`].
     chosen: Vec<u32>,
 }
 
@@ -69,7 +69,7 @@ pub(crate) struct EdgeQuery<'a> {
     pub(crate) limits: Limits,
     /// Wave number, in rad/m.
     pub(crate) wave_number: f64,
-    /// Difference in length, in metres, below which paths over the two ends of a wall are one. `None` to keep all
+    /// Difference in length, in metres, below which paths over the two ends of a wall are merged. `None` to keep all
     /// separate.
     pub(crate) joined_m: Option<f64>,
 }
@@ -84,7 +84,7 @@ impl EdgeSearch {
     pub(crate) fn search(&mut self, query: &EdgeQuery<'_>, stop: &Stop) -> bool {
         self.choose(query);
         let Some(joined_m) = query.joined_m else { return self.search_each(query, stop) };
-        // Whether two are one must not depend on which of them may be heard alone.
+        // The decision to merge two paths must not depend on which of them is audible alone.
         let limits = Limits { max_length_m: query.limits.max_length_m + joined_m, ..query.limits };
         if !self.search_each(&EdgeQuery { audibility: None, limits, ..*query }, stop) {
             return false;
@@ -100,8 +100,8 @@ impl EdgeSearch {
         true
     }
 
-    /// Selects the edges around which some receiver may hear, and those that share a surface with one, since two ends
-    /// of a surface may be heard as one.
+    /// Selects the edges around which some receiver may hear, and all edges that share a surface with one of these,
+    /// since the two ends of a surface may be heard as one.
     fn choose(&mut self, query: &EdgeQuery<'_>) {
         let EdgeQuery { scene, audibility, source, receivers, .. } = *query;
         let edges = scene.edges();
@@ -117,7 +117,7 @@ impl EdgeSearch {
         let count = receivers.len().max(1) as f64;
         let middle = Point::from(receivers.iter().fold(Vector::zeros(), |sum, at| sum + at.coords) / count);
         let spread_m = receivers.iter().map(|at| (at - middle).norm()).fold(0.0, f64::max);
-        // An edge further away leads to no receiver on a way that is short enough.
+        // A more distant edge leads to no receiver on a path that is short enough.
         let loudest = MOST * LOUDEST_PANEL;
         let there_and_back_m = audibility.reach_m(loudest) + (source - middle).norm() + spread_m;
         let half = Vector::repeat((0.5 * there_and_back_m + TOUCH_M).min(3.0 * MAX_COORDINATE_M));
@@ -191,7 +191,7 @@ impl EdgeSearch {
                     length_m,
                     departure_rad: libm::atan2(out.y, out.x),
                     arrival_rad: libm::atan2(home.y, home.x),
-                    // The series is not a number where two of its poles meet.
+                    // The series is NaN where two of its poles meet.
                     spread: if spread < most { spread } else { most },
                     unbounded: Some([spread, wave_number]),
                     at: edge.at,
@@ -203,8 +203,8 @@ impl EdgeSearch {
     }
 }
 
-/// Upper bound relative to an undisturbed wave of the same length: the exact value on the limit of a shadow or of a
-/// reflection, where Keller's coefficient grows without bound.
+/// Upper bound relative to an undisturbed wave of the same length. It is the exact value on the limit of a shadow or of
+/// a reflection, where Keller's coefficient grows without bound.
 const MOST: f64 = 0.5;
 
 #[cfg(test)]
@@ -225,22 +225,22 @@ mod tests {
         libm::exp10(-Air::default().absorption_db_per_m(49_400.0) * length_m / 20.0)
     }
 
-    // A pillars corner is heard at a metre 36 8 decibel below a wall.
+    // A pillar's corner is heard at 1 m 36.8 dB below a wall.
     #[test]
     fn pillars_corner_is_36_8_db_below_a_wall_at_1_m() {
-        // Its corner at the origin, the open space on three sides; the sensor a metre away on the corner's bisector.
+        // The corner is at the origin with open space on three sides; the sensor is 1 m away on the bisector.
         let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0], [0.0, 0.0]];
         let pillar: Vec<_> = Wall::polyline(&corners.map(|[x, y]| [y, x])).collect();
         let here = Point::new(-(0.5f64.sqrt()), -(0.5f64.sqrt()));
         let heard = around(pillar, here, here);
-        // The two corners beside it are in sight as well, the one behind it is not.
+        // The two neighbouring corners are visible too, the corner behind is not.
         assert_eq!(heard.len(), 3, "{heard:?}");
         let (length_m, amplitude) = heard[0];
         let below_db = 20.0 * libm::log10(amplitude / (0.5 * air(2.0)));
         assert!((length_m - 2.0).abs() < 1e-12 && (below_db + 36.8).abs() < 0.05, "{length_m} {below_db}");
     }
 
-    // Sound bends around a panels end and less the deeper the shadow.
+    // Sound bends around a panel's end, and less in deeper shadow.
     #[test]
     fn sound_bends_less_into_deeper_shadow() {
         let panel = vec![Wall::new(0.0, -5.0, 0.0, 0.0).with_faces(Faces::Both)];
@@ -251,12 +251,12 @@ mod tests {
             assert!((length_m - (libm::hypot(2.0, 0.5) + libm::hypot(2.0, y))).abs() < 1e-12);
             assert!(amplitude > fainter, "{y}: {amplitude} {fainter}");
         }
-        // Just on the shadow's limit half of the wave is there.
+        // Half of the wave remains exactly on the limit of the shadow.
         let (length_m, amplitude) = behind(0.5);
         assert!((amplitude - 0.5 * air(length_m) / length_m).abs() < 1e-9);
     }
 
-    // Rooms with rows of pillars, whose corners are in line with each other and with the source.
+    // Rooms have rows of pillars, whose corners are in line with each other and with the source.
     #[test]
     fn every_edge_in_sight_is_looked_at() {
         let mut random = Random::new(7);

@@ -1,4 +1,4 @@
-//! Legs from a transducer to the poles: the beams of its tree that pass one, with upper bounds on their loudness there.
+//! Legs from a transducer to the poles: beams of its tree that pass a pole, with upper bounds on their loudness there.
 
 use crate::{
     geometry::{Point, Vector},
@@ -7,7 +7,7 @@ use crate::{
     tracing::beam::{Beam, BeamTree, PoleCone},
 };
 
-/// A leg from a transducer to a pole: a beam that passes it.
+/// A leg from a transducer to a pole: a beam that passes the pole.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Leg {
     pub(super) pole: u32,
@@ -24,12 +24,12 @@ pub(super) struct Leg {
     cones: [u32; 2],
 }
 
-/// All legs from a transducer: by pole, those of low order first.
+/// All legs from a transducer, by pole, with the lowest orders first.
 #[derive(Debug, Default)]
 pub(super) struct Legs {
     pub(super) legs: Vec<Leg>,
     cones: Vec<PoleCone>,
-    /// Next free place for a cone of each pole.
+    /// Next free index for a cone of each pole.
     next: Vec<u32>,
 }
 
@@ -38,15 +38,15 @@ pub(super) struct Legs {
 pub(super) struct Home {
     pub(super) beams: Vec<Beam>,
     pub(super) legs: Legs,
-    /// Poles directly visible.
+    /// Poles that are directly visible.
     pub(super) in_sight: Vec<Seen>,
 }
 
-/// A pole directly visible from a transducer.
+/// A pole that is directly visible from a transducer.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Seen {
     pub(super) pole: u32,
-    /// Upper bound as in a [`Leg`].
+    /// Upper bound as in [`Leg::square`].
     pub(super) square: f64,
     pub(super) least_m: f64,
 }
@@ -62,7 +62,7 @@ impl Home {
 }
 
 impl Legs {
-    /// Stores the legs of a grown tree. Without an aim everything counts as audible.
+    /// Stores the legs of a grown tree. Without an aim, everything counts as audible.
     pub(super) fn fill(&mut self, tree: &BeamTree, scene: &Scene, aim: Option<Aim<'_>>) {
         self.take_by_pole(&tree.pole_cones, scene.poles().len());
         let Self { legs, cones, .. } = self;
@@ -97,26 +97,26 @@ impl Legs {
         }
     }
 
-    /// The poles that the transducer's own, unreflected beam passes.
+    /// Returns the poles that the transducer's own, unreflected beam passes.
     pub(super) fn in_sight(&self) -> impl Iterator<Item = Seen> {
         let unreflected = self.legs.iter().filter(|leg| leg.beam == 0);
         unreflected.map(|leg| Seen { pole: leg.pole, square: leg.square, least_m: leg.least_m })
     }
 
-    /// The legs to one pole.
+    /// Returns the legs to one pole.
     pub(super) fn to(&self, pole: u32) -> &[Leg] {
         let start = self.legs.partition_point(|leg| leg.pole < pole);
         let end = start + self.legs[start..].partition_point(|leg| leg.pole == pole);
         &self.legs[start..end]
     }
 
-    /// The leg's cones that contain a point, relative to its image.
+    /// Returns the leg's cones that contain a point, relative to its image.
     fn holding(&self, leg: &Leg, ahead: Vector) -> impl Iterator<Item = &PoleCone> + Clone {
         let [start, end] = leg.cones.map(|cone| cone as usize);
         self.cones[start..end].iter().filter(move |cone| cone.holds(ahead))
     }
 
-    /// Returns true if this leg and another one see a point of a pole's surface in the same triangle.
+    /// Returns true if this leg and another see a point of a pole's surface in the same triangle.
     pub(super) fn meet(&self, leg: &Leg, others: &Self, other: &Leg, at: Point, mesh: &Mesh) -> bool {
         let theirs = others.holding(other, at - other.image);
         let is_seen = |cone: &PoleCone| theirs.clone().any(|their| their.triangle == cone.triangle);

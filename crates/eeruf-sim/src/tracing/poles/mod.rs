@@ -1,5 +1,5 @@
-//! Paths that bounce at a pole. Walls before the pole mirror the source forward, walls after it mirror the receiver
-//! backward; between the two images remains one problem of Alhazen, whose answer must lie in a beam of each.
+//! Paths that bounce at a pole. Walls before the pole mirror the source forward, and walls after it mirror the receiver
+//! backward. Between the two images remains one problem of Alhazen, whose solution must lie in a beam of each.
 
 mod legs;
 mod shadow;
@@ -17,7 +17,7 @@ use crate::{
 use legs::{Home, Leg, Legs, Seen};
 pub(super) use shadow::is_shaded;
 
-/// Largest number of Alhazen problems that one query may try, some ten seconds.
+/// Largest number of Alhazen problems that one query may try: about ten seconds of work.
 const MAX_TRIED: usize = 1 << 25;
 
 /// Number of Alhazen problems between two checks of the stop switch.
@@ -39,7 +39,7 @@ pub(crate) struct PolePath {
     bounces: (u32, u32),
 }
 
-/// The input of a search: a source whose tree is grown, and the limits.
+/// The input of a search: a source with its grown tree, and the limits.
 #[derive(Clone, Copy)]
 pub(crate) struct PoleQuery<'a> {
     pub(crate) scene: &'a Scene,
@@ -87,7 +87,7 @@ pub(crate) struct PoleSearch {
     triangles: [Vec<u32>; 2],
     /// For each pole, a lower bound on the distance from its surface to the nearest receiver, in metres.
     nearest_m: Vec<f64>,
-    /// Poles directly visible from the source over which it may be heard by a second one, and those second poles, by
+    /// Poles directly visible from the source over which a second pole may be ensonified, and those second poles, by
     /// number.
     firsts: Vec<Seen>,
     seconds: Vec<bool>,
@@ -102,8 +102,8 @@ impl PoleSearch {
         &self.bounces[path.bounces.0 as usize..path.bounces.1 as usize]
     }
 
-    /// Finds all paths over poles to these receivers, except those that are certainly too faint. Returns true if these
-    /// are all: the budget was not spent, and the work not stopped.
+    /// Finds all paths over poles to these receivers, except those that are certainly too faint. Returns true if the
+    /// result is complete: the budget was not exceeded, and the work was not stopped.
     pub(crate) fn search(&mut self, query: &PoleQuery<'_>, receivers: &[Point]) -> bool {
         let PoleQuery { scene, tree, limits, audibility, budget, stop, .. } = *query;
         self.found.clear();
@@ -154,7 +154,7 @@ impl PoleSearch {
         true
     }
 
-    /// Drops the source's legs to poles over which no receiver hears it, whatever its distance and heading.
+    /// Drops the source's legs to poles over which no receiver hears it at any heading.
     fn drop_faint(&mut self, audibility: &Audibility, scene: &Scene) {
         let Self { from_source, nearest_m, .. } = self;
         from_source.legs.retain(|leg| {
@@ -163,7 +163,7 @@ impl PoleSearch {
         });
     }
 
-    /// Selects pairs of poles over which sound may be heard, whatever the receiver's distance and heading.
+    /// Selects pairs of poles over which sound may be heard at any heading of the receiver.
     fn pair_poles(&mut self, audibility: Option<&Audibility>, scene: &Scene) {
         let Self { from_source, nearest_m, firsts, seconds, .. } = self;
         firsts.clear();
@@ -223,7 +223,7 @@ impl PoleSearch {
         complete
     }
 
-    /// Joins one of a receiver's legs to a pole with all of the source's.
+    /// Joins one of a receiver's legs to a pole with all of the source's legs to it.
     fn join(&mut self, query: &PoleQuery<'_>, home: &Home, behind: &Leg, receiver: Receiver) {
         let PoleQuery { scene, limits, audibility, stop, .. } = *query;
         let radius_m = scene.poles()[behind.pole as usize].radius_m;
@@ -386,13 +386,13 @@ impl PoleSearch {
     }
 }
 
-/// Lower bound on the distance from a pole's surface to the nearest receiver, in metres.
+/// Returns a lower bound on the distance from a pole's surface to the nearest receiver, in metres.
 fn nearest_m(pole: &Pole, receivers: &[Point]) -> f64 {
     let far_m = receivers.iter().map(|at| (at - pole.centre).norm()).fold(f64::INFINITY, f64::min);
     (far_m - pole.radius_m).max(0.0)
 }
 
-/// Returns true if sound may be heard that bounces at these two different poles in turn.
+/// Returns true if sound that bounces at these two different poles in turn may be heard.
 fn may_hear_two(audibility: Option<&Audibility>, scene: &Scene, before: &Seen, after: &Seen) -> bool {
     before.pole != after.pole
         && audibility.is_none_or(|audibility| {
@@ -403,7 +403,7 @@ fn may_hear_two(audibility: Option<&Audibility>, scene: &Scene, before: &Seen, a
         })
 }
 
-/// The direction at the source that corresponds to `ahead` in the image's world.
+/// Returns the direction at the source that corresponds to `ahead` in the image's world.
 fn unfolded(ahead: Vector, order: u32, turn: f64) -> f64 {
     let there = libm::atan2(ahead.y, ahead.x);
     wrap_angle(if order.is_multiple_of(2) { there - turn } else { turn - there })

@@ -1,4 +1,4 @@
-//! Shadows of poles. Sound bends around objects thinner than its first Fresnel zone, and does not reach places behind
+//! Shadows of poles. Sound bends around poles thinner than the first Fresnel zone, and does not reach places behind
 //! thicker ones.
 
 use crate::{
@@ -7,15 +7,15 @@ use crate::{
     tracing::bounce_points::parts,
 };
 
-/// Returns true if a pole blocks a path because it is too thick for sound to bend around: a leg passes it within its
-/// radius, which exceeds
+/// Returns true if a pole blocks a path because it is too thick for sound to bend around. This is so if a leg passes it
+/// within its radius and the radius exceeds
 ///
 /// ```text
 /// sqrt(lambda d1 d2 / (d1 + d2))
 /// ```
 ///
-/// `corners` are those of the path, ends included. Walls are mirrors, so `d1` and `d2` are counted along the path,
-/// across bounces at walls, up to its ends or to the next pole or edge, which makes the sound spread again.
+/// `corners` are the path's corners, ends included. Walls are mirrors, so `d1` and `d2` are counted along the path,
+/// across bounces at walls, up to its ends or to the next pole or edge, where the sound spreads again.
 pub(in crate::tracing) fn is_shaded(scene: &Scene, corners: &[Point], bounces: &[Bounce], wavelength_m: f64) -> bool {
     for (start, end) in parts(bounces) {
         let whole_m: f64 = corners[start..=end].windows(2).map(|leg| (leg[1] - leg[0]).norm()).sum();
@@ -64,12 +64,12 @@ mod tests {
         let pillar = Pole::new(1.5, 0.0, 0.6);
         assert_eq!(echoes(vec![pillar], false), [6.0]);
         assert_eq!(echoes(vec![pillar], true), [0.0; 0]);
-        // Nor does a path that grazes it pass, while one just beside it does.
+        // A path that grazes the pole does not pass either, while one just beside it does.
         assert_eq!(echoes(vec![Pole::new(1.5, 0.59, 0.6)], true), [0.0; 0]);
         assert_eq!(echoes(vec![Pole::new(1.5, 0.61, 0.6)], true), [6.0]);
     }
 
-    // Sound bends around a pole thinner than its first fresnel zone.
+    // Sound bends around a pole thinner than its first Fresnel zone.
     #[test]
     fn sound_bends_around_a_thin_pole() {
         // Half way to the wall, 1.5 m of the 6 m there and back: sqrt(6.947 mm * 1.5 m * 4.5 m / 6 m) = 88.4 mm.
@@ -96,7 +96,7 @@ mod tests {
         assert_eq!(heard(vec![behind]), [[Bounce::Pole(0)]]);
     }
 
-    // Whatever the physics.
+    // The error does not depend on the physics.
     #[test]
     fn sensor_inside_a_solid_is_refused() {
         let room = Wall::polyline(&[[-4.0, -4.0], [4.0, -4.0], [4.0, 4.0], [-4.0, 4.0], [-4.0, -4.0]]).collect();

@@ -23,7 +23,7 @@ pub(in crate::tracing) enum FoundPath<'a> {
 }
 
 impl FoundPath<'_> {
-    /// The number of the path's receiver.
+    /// Returns the number of the path's receiver.
     pub(in crate::tracing) fn receiver(&self) -> u32 {
         match self {
             Self::Walls(image) => image.receiver,
@@ -34,7 +34,7 @@ impl FoundPath<'_> {
 }
 
 impl<'a> Found<'a> {
-    /// The path with a number.
+    /// Returns the path with this number.
     pub(in crate::tracing) fn get(self, index: u32) -> FoundPath<'a> {
         let index = index as usize;
         let (walls, poles) = (self.tree.visible_images.len(), self.poles.found.len());

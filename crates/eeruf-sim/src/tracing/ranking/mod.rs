@@ -7,7 +7,7 @@ use crate::geometry::TOUCH_M;
 use crate::scene::Bounce;
 pub(super) use found::{Found, FoundPath};
 
-/// Mask of the low bits of a sorting key, which hold the index of the path; the high bits are those of its length,
+/// Mask of the low bits of a sorting key, which hold the index of the path. The high bits are those of its length,
 /// since the bits of positive numbers sort like the numbers.
 const INDEX: u64 = (1 << 24) - 1;
 const _: () = assert!(MAX_BEAMS as u64 <= INDEX);
@@ -26,7 +26,7 @@ pub(super) struct Ranking {
     keys: Vec<u64>,
     ranks: Vec<Rank>,
     starts: Vec<u32>,
-    // Two wall sequences to be compared.
+    // Buffers for two sequences of walls that are compared.
     known: Vec<Bounce>,
     other: Vec<Bounce>,
 }
@@ -38,7 +38,7 @@ impl Ranking {
         self.remove_doubles(found, receivers);
     }
 
-    /// The paths in order.
+    /// Returns the paths in order.
     pub(super) fn ranks(&self) -> &[Rank] {
         &self.ranks
     }
@@ -70,8 +70,8 @@ impl Ranking {
         }
     }
 
-    /// Sorts the paths exactly and removes duplicates with the same order and image: both wall orders of a right-angle
-    /// corner, or two pieces of one straight wall, find one at their common point.
+    /// Sorts the paths exactly and removes duplicates with the same order and image, which come from both wall orders
+    /// of a right-angle corner, or from two pieces of one straight wall at their common point.
     fn remove_doubles(&mut self, found: Found<'_>, receivers: usize) {
         self.ranks.clear();
         for receiver in 0..receivers {
@@ -94,7 +94,7 @@ impl Ranking {
                 match below.chain(above).find(|&k| found.are_one(self.ranks[k].index, index)) {
                     None => self.ranks.insert(at_rank, Rank { length_m, index }),
                     Some(k) => {
-                        // The smaller wall sequence stays, whatever the mesh looked like.
+                        // The smaller sequence of walls stays, so that the result does not depend on the mesh.
                         self.known.clear();
                         self.other.clear();
                         found.push_bounces(self.ranks[k].index, &mut self.known);

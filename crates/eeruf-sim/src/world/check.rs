@@ -146,7 +146,7 @@ pub(super) fn check(scene: &Scene, index: usize, robot: &Robot) -> Result<(), Wo
     if robot.audible > MAX_PERIOD {
         return fail("audible_us", f64::from(robot.audible.as_micros()), "0 to 268435456");
     }
-    // More is beyond what a ring takes.
+    // A ring does not accept larger values.
     if let Some(change) = robot.path_change.filter(|change| change.as_micros() >= u32::from(u16::MAX)) {
         return fail("path_change_us", f64::from(change.as_micros()), "0 to 65534");
     }
@@ -175,7 +175,7 @@ pub(super) fn check(scene: &Scene, index: usize, robot: &Robot) -> Result<(), Wo
         let disc_m = robot.body.is_none().then(|| robot.radius_m());
         return Err(WorldError::Contact { robot: index, contact, disc_m });
     }
-    // Sensors may stand out of a body; without one they are within the disc that was just looked at.
+    // Sensors may stick out of a body; without a body they are within the disc that was just checked.
     for (sensor, pose) in robot.sensors.iter().enumerate().filter(|_| robot.body.is_some()) {
         if let Some(contact) = scene.contact(&Body::Disc(1e-6), &(robot.pose * pose)) {
             return Err(WorldError::SensorContact { robot: index, sensor, contact });

@@ -16,14 +16,14 @@ pub struct Clock {
     pub drift_ppm: f64,
 }
 
-/// Largest drift of a clock, in parts per million: a choice, ten times a crystal's and about an RC oscillator's.
+/// Largest drift of a clock, in parts per million: a choice, ten times a crystal's and about that of an RC oscillator.
 pub const MAX_DRIFT_PPM: f64 = 1000.0;
 
 /// A clock whose drift, a ratio of whole numbers, may change for a time.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Ticker {
     offset_us: u32,
-    /// Consecutive stretches; those that are not needed never begin.
+    /// Consecutive stretches; unused stretches never begin.
     stretches: [Stretch; 3],
 }
 
@@ -67,7 +67,7 @@ impl Ticker {
         self
     }
 
-    /// Whole microseconds that the clock has counted at a true time.
+    /// Returns the whole microseconds that the clock has counted at a true time.
     pub(crate) fn ticks(&self, true_ns: u64) -> u64 {
         let stretch = self.stretches.iter().rev().find(|stretch| stretch.from <= true_ns).unwrap_or(&self.stretches[0]);
         if stretch.from == 0 && stretch.gain_ppb == 0 {
@@ -76,7 +76,7 @@ impl Ticker {
         stretch.counted(true_ns) / 1000
     }
 
-    /// The first true time at which the clock has counted this many microseconds.
+    /// Returns the first true time at which the clock has counted this many microseconds.
     pub(crate) fn reaches(&self, ticks: u64) -> u64 {
         let own_ns = ticks.saturating_mul(1000);
         let stretch = self.stretches.iter().rev().find(|stretch| stretch.own <= own_ns).unwrap_or(&self.stretches[0]);
@@ -88,12 +88,12 @@ impl Ticker {
         stretch.from + ((own_ns + rate - 1) / rate) as u64
     }
 
-    /// The reading of the counter after this many ticks.
+    /// Returns the reading of the counter after this many ticks.
     pub(crate) fn instant(&self, ticks: u64) -> Instant {
         Instant::from_micros(self.offset_us.wrapping_add(ticks as u32))
     }
 
-    /// The true length of a time measured by the clock at its usual rate.
+    /// Returns the true length of a time that the clock measures at its usual rate.
     pub(crate) fn true_ns(&self, own_us: u32) -> u64 {
         let [usual, ..] = self.stretches;
         Self { stretches: [usual, NEVER, NEVER], ..*self }.reaches(u64::from(own_us))

@@ -8,26 +8,26 @@ use super::robot::MAX_ROBOTS;
 use crate::scene::{Contact, SceneError};
 use crate::tracing::MAX_ORDER;
 
-/// Error of building a world. Robots are counted from 0 in code and printed from 1; walls and poles from 0, as in
-/// files. `{:#}` counts robots from 0.
+/// Error of building a world. Robots are counted from 0 in code and with `{:#}`, but from 1 with `{}`. Walls and poles
+/// are counted from 0, as in files.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum WorldError {
-    /// The scene itself.
+    /// The scene is invalid.
     Scene(SceneError),
-    /// No robots, or too many.
+    /// There are no robots, or too many.
     Robots {
         /// The number given.
         robots: usize,
     },
-    /// A robot without sensors, or with too many.
+    /// A robot has no sensors, or too many.
     Sensors {
         /// The robot.
         robot: usize,
         /// Number of sensors of the robot.
         sensors: usize,
     },
-    /// An invalid number.
+    /// A number is invalid.
     Field {
         /// The robot.
         robot: usize,
@@ -38,7 +38,7 @@ pub enum WorldError {
         /// The expected range.
         expected: &'static str,
     },
-    /// An invalid fault.
+    /// A fault is invalid.
     Fault {
         /// The fault.
         fault: usize,
@@ -49,34 +49,34 @@ pub enum WorldError {
         /// The expected range.
         expected: &'static str,
     },
-    /// A schedule for another number of sensors.
+    /// A schedule is for another number of sensors.
     Schedule {
         /// The robot.
         robot: usize,
-        /// Number of sensors the schedule has.
+        /// Number of sensors of the schedule.
         sensors: usize,
-        /// Sensors of the robot.
+        /// Number of sensors of the robot.
         expected: usize,
     },
     /// A sensor would fire again while it still listens.
     Window {
         /// The robot.
         robot: usize,
-        /// The window asked for.
+        /// The requested window.
         window: Micros,
         /// The shortest time between two firings of one sensor.
         min_refire: Micros,
     },
-    /// A robot that starts inside something.
+    /// A robot starts inside an object.
     Contact {
         /// The robot.
         robot: usize,
         /// The object that the robot touches.
         contact: Contact,
-        /// The radius in metres of the disc that a robot without a body takes up.
+        /// The radius in metres of the disc that stands for a robot without a body.
         disc_m: Option<f64>,
     },
-    /// A sensor that starts inside something.
+    /// A sensor starts inside an object.
     SensorContact {
         /// The robot.
         robot: usize,
@@ -85,7 +85,7 @@ pub enum WorldError {
         /// The object around the sensor.
         contact: Contact,
     },
-    /// A sensor that starts inside another robot's body.
+    /// A sensor starts inside another robot's body.
     SensorInside {
         /// The sensor's robot.
         robot: usize,
@@ -94,12 +94,12 @@ pub enum WorldError {
         /// The other robot.
         of: usize,
     },
-    /// Two robots whose bodies overlap.
+    /// The bodies of two robots overlap.
     Bodies {
         /// The robots.
         robots: (usize, usize),
     },
-    /// An invalid number of the physics.
+    /// A number of the physics is invalid.
     Physics {
         /// The field, by its name in files.
         field: &'static str,
@@ -108,16 +108,16 @@ pub enum WorldError {
         /// The expected range.
         expected: &'static str,
     },
-    /// Two robots that start one inside the other.
+    /// Two robots start one inside the other.
     Overlap {
         /// The robots.
         robots: (usize, usize),
         /// Distance between their centres, in metres.
         apart_m: f64,
-        /// Least distance allowed.
+        /// Least allowed distance between the centres, in metres.
         least_m: f64,
     },
-    /// An invalid number of the noise.
+    /// A number of the noise is invalid.
     Noise {
         /// The field, by its name in files.
         field: &'static str,
@@ -126,9 +126,9 @@ pub enum WorldError {
         /// The expected range.
         expected: &'static str,
     },
-    /// An order above the limit for paths.
+    /// An order is above the limit for paths.
     Order {
-        /// The order asked for.
+        /// The requested order.
         max_order: u32,
     },
 }

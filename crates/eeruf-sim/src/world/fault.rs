@@ -1,4 +1,4 @@
-//! Faults in a world (sensors, wires and lines, clocks and tables, people and doors), each for a time.
+//! Faults in a world for a time: of sensors, wires and lines, of clocks and tables, and by people and doors.
 
 use eeruf_files::AnySchedule;
 use serde::{Deserialize, Deserializer, Serialize};
@@ -30,8 +30,8 @@ pub struct Fault {
 
 /// A kind of fault.
 ///
-/// On a module that answers by the width of a pulse, a low glitch looks like the echo's edge and a high one has no
-/// effect. On a module whose line rises with the echo it is the other way round.
+/// On a module that answers with a pulse, a low glitch looks like the edge of the echo, and a high glitch has no
+/// effect. On a module whose line rises with the echo, the two are exchanged.
 #[derive(Clone, Debug, PartialEq, Deserialize, Serialize)]
 #[serde(tag = "kind", rename_all = "snake_case")]
 pub enum FaultKind {
@@ -67,21 +67,21 @@ pub enum FaultKind {
     },
     /// The clock runs too fast or too slow.
     ClockDrift {
-        /// Drift, in millionths.
+        /// Drift, in parts per million.
         ppm: f64,
     },
-    /// The sensor is missing: neither sound nor edges.
+    /// The sensor is missing: there is neither sound nor an edge.
     Missing,
-    /// The line stays high: it does not fall, and the sensor is triggered no more.
+    /// The line stays high: it does not fall, and the sensor is not triggered again.
     Stuck,
-    /// The echo line is cut: sound, but no edges.
+    /// The echo line is cut: there is sound, but no edge.
     Cut,
-    /// One rise in this many causes no interrupt.
+    /// One rise in every this many causes no interrupt.
     LostRises {
         /// 1 for all.
         every: u32,
     },
-    /// One fall in this many causes no interrupt.
+    /// One fall in every this many causes no interrupt.
     LostFalls {
         /// 1 for all.
         every: u32,
@@ -95,7 +95,7 @@ pub enum FaultKind {
     },
     /// The line is high for a moment while it should be low.
     GlitchHigh {
-        /// Time after it fell, or, if it rises with the echo, after the trigger, in us.
+        /// Time in us after the line fell or, if it rises with the echo, after the trigger.
         after_us: u32,
         /// Duration, in us.
         width_us: u32,
@@ -190,18 +190,18 @@ pub struct LineEdge {
 }
 
 impl Fault {
-    /// A fault from the beginning on, for all sensors of the first robot, without an end.
+    /// Makes a fault from the beginning on, for all sensors of the first robot, without an end.
     pub const fn new(kind: FaultKind) -> Self {
         Self { kind, robot: 0, sensors: vec![], from_s: 0.0, to_s: f64::INFINITY }
     }
 
-    /// Returns the fault on these sensors only.
+    /// Returns the fault for these sensors only.
     #[must_use]
     pub fn of_sensors(self, sensors: &[u8]) -> Self {
         Self { sensors: sensors.to_vec(), ..self }
     }
 
-    /// Returns the fault from one time to another, in seconds.
+    /// Returns the fault with this begin and end, in seconds.
     #[must_use]
     pub fn between(self, from_s: f64, to_s: f64) -> Self {
         Self { from_s, to_s, ..self }
@@ -217,7 +217,7 @@ impl Fault {
         !self.kind.is_of_scene() && self.robot == robot && (self.sensors.is_empty() || self.sensors.contains(&sensor))
     }
 
-    /// The sensor whose wire is exchanged with this one's.
+    /// Returns the sensor whose wire is exchanged with this sensor's.
     pub(crate) fn exchanged(&self, sensor: u8) -> u8 {
         match self.sensors[..] {
             [one, other] if sensor == one => other,
@@ -226,7 +226,7 @@ impl Fault {
         }
     }
 
-    /// Objects that the fault puts into the scene at a time.
+    /// Adds the objects that the fault puts into the scene at a time.
     pub(crate) fn obstacles(&self, time_s: f64, walls: &mut Vec<Wall>, poles: &mut Vec<Pole>) {
         let share = if self.to_s > self.from_s && self.to_s.is_finite() {
             ((time_s - self.from_s) / (self.to_s - self.from_s)).clamp(0.0, 1.0)
@@ -302,7 +302,7 @@ impl Fault {
     }
 }
 
-/// The scene with the objects of faults at a time.
+/// Returns the scene with the objects of faults at a time.
 ///
 /// # Errors
 /// See [`Scene::new`].
@@ -314,8 +314,8 @@ pub(crate) fn scene_with(scene: &Scene, faults: &[Fault], time_s: f64) -> Result
     Ok(Scene::new(walls, poles, scene.air())?.with_room(scene.room().copied())?)
 }
 
-/// The edges, under these faults, of a line that answers by the width of a pulse and would rise and fall at these
-/// times; firings are counted from 1. A driver should handle them like those of its modules.
+/// Returns the edges, under these faults, of an echo line that would rise and fall at these times. The line answers by
+/// the width of a pulse; firings are counted from 1. A driver should handle the edges like those of its modules.
 ///
 /// ```
 /// use eeruf_sim::{Fault, FaultKind, line_edges};

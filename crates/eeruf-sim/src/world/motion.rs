@@ -2,7 +2,7 @@
 
 use crate::geometry::{Moment, Point, Pose, Vector};
 
-/// The fastest motion, in m/s and rad/s: a choice beyond any robot, since more is a mistake in the input.
+/// The fastest motion, in m/s and rad/s: a choice. No robot is faster, so a larger value is a mistake in the input.
 pub const MAX_SPEED: f64 = 50.0;
 
 /// Motion of a robot from its first pose on.
@@ -11,15 +11,15 @@ pub enum Motion {
     /// The robot stands.
     #[default]
     Still,
-    /// The robot keeps a velocity and a rate of turn for ever.
+    /// The robot keeps a velocity and a rate of turn forever.
     Constant {
         /// Velocity in the scene's frame, in m/s.
         velocity: Vector,
         /// Rate of turn in rad/s, counter-clockwise.
         turn_rad_s: f64,
     },
-    /// The robot drives in straight lines from its pose through these points, facing its direction and turning on the
-    /// spot, and stops at the last.
+    /// The robot drives in straight lines from its pose through these points, turns on the spot to face its direction,
+    /// and stops at the last point.
     Waypoints {
         /// The points, in metres.
         points: Vec<Point>,
@@ -38,7 +38,7 @@ impl Motion {
         }
     }
 
-    /// Pose and velocity at `time_s` seconds after it was at `start`.
+    /// Returns pose and velocity `time_s` seconds after the robot was at `start`.
     ///
     /// ```
     /// use eeruf_sim::{Motion, Point, Pose, Vector};

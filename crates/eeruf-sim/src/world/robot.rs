@@ -17,29 +17,29 @@ use crate::{
     scene::{Body, DEFAULT_HEIGHT_M},
 };
 
-/// The most robots in one world: a choice beyond any use, since more is a mistake in the input.
+/// Largest number of robots in one world: a choice beyond any use, since more is a mistake in the input.
 pub const MAX_ROBOTS: usize = 64;
-/// A robot with its ring. Make one with [`Robot::ring`] and change what differs.
+/// A robot with its ring. Make one with [`Robot::ring`], then change the fields that differ.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Robot {
     /// Place and heading of each sensor relative to the robot, 1 to 64 of them.
     pub sensors: Vec<Pose>,
-    /// The kind of transducer. Robots hear each other if their [bands overlap](Transducer::hears); those of the presets
-    /// do not.
+    /// The kind of transducer. Robots hear each other if their [bands overlap](Transducer::hears); the bands of the
+    /// presets do not.
     pub transducer: Transducer,
-    /// The module of each sensor, if they are not all of [`transducer`](Self::transducer)'s kind, which is then the
-    /// first one's. Empty by default.
+    /// The module of each sensor, if not all are [`transducer`](Self::transducer)s. That field then holds the
+    /// transducer of the first module. Empty by default.
     pub modules: Vec<Module>,
-    /// The outline, which reflects and shades others' sound and may not overlap a wall, a pole or another body. Its own
-    /// sensors neither see it nor are shaded by it, except that nothing leaves or reaches them from behind. The default
-    /// is none: the robot is transparent, and stands free by the disc of [`radius_m`](Self::radius_m).
+    /// The outline, which reflects and shades the sound of others and may not overlap a wall, a pole or another body.
+    /// For the robot's own sensors it only blocks sound from behind. The default is none: the robot is transparent, and
+    /// the disc of [`radius_m`](Self::radius_m) must be free.
     pub body: Option<Body>,
-    /// The level in dB of the sound that its mounting carries straight from one of its sensors to another, relative to
-    /// two that face each other at the same distance; the transducers' patterns count if they are louder. `None`, the
-    /// default, for a mounting that carries nothing.
+    /// Level in dB of the sound that the mounting carries straight from one of the sensors to another, relative to two
+    /// sensors that face each other at the same distance. The transducers' patterns count if they are louder. `None`,
+    /// the default, for a mounting that carries no sound.
     pub coupling_db: Option<f64>,
-    /// The heights of its sensors above the floor in metres, one each, if the scene has a [room](crate::Room). Empty by
-    /// default, for [`DEFAULT_HEIGHT_M`].
+    /// The height of each sensor above the floor in metres, if the scene has a [room](crate::Room). Empty, the default,
+    /// for [`DEFAULT_HEIGHT_M`].
     pub heights_m: Vec<f64>,
     /// Pose of the robot at the start.
     pub pose: Pose,
@@ -47,19 +47,19 @@ pub struct Robot {
     pub motion: Motion,
     /// The clock.
     pub clock: Clock,
-    /// True if its ring must expect other robots even if the world has none. The default is false: the robot knows if
-    /// it is alone; with [`Method::Flow`](crate::Method::Flow) a moving robot then believes each echo.
+    /// True if the ring must expect other robots even if the world has none. The default is false: the robot knows if
+    /// it is alone. Then a moving robot with [`Method::Flow`](crate::Method::Flow) believes each echo.
     pub others: bool,
-    /// Delay from the start of the simulation, by its own clock, before its ring begins to fire.
+    /// Delay from the start of the simulation, by the robot's clock, until its ring begins to fire.
     pub start: Micros,
     /// The schedule that the `eeruf` methods use; `None` for the paper's own (see
     /// [`table_i_d_for`](crate::table_i_d_for)).
     pub schedule: Option<AnySchedule>,
-    /// `T_p`, for all methods that do not bring their own schedule. The default is 60 ms.
+    /// `T_p`, for all methods that do not have their own schedule. The default is 60 ms.
     pub period: Micros,
     /// `T_delta`: the greatest difference of near-identical consecutive readings. The default is 0.5 ms.
     pub t_delta: Micros,
-    /// `T_wind`: how long a sensor listens. The default is 36 ms, 6.2 m.
+    /// `T_wind`: the time for which a sensor listens. The default is 36 ms, for 6.2 m.
     pub window: Micros,
     /// Deaf time of a sensor after it has fired; the shortest if they differ.
     pub blanking: Micros,
@@ -68,8 +68,8 @@ pub struct Robot {
     /// With immediate refiring, the least time from a sensor's echo to its next firing. The default is 36 ms, its
     /// listening time: with much less it hears its last sound fade away in the room, just after blanking, every time.
     pub min_refire: Micros,
-    /// Number of adjacent sensors that must not fire close together; the conventional lags repeat after as many. The
-    /// default is 4.
+    /// Number of adjacent sensors that must not fire close together; the conventional lags repeat after this number.
+    /// The default is 4.
     pub neighbours: u8,
     /// Number of consecutive readings that must agree, 2 to 8. The default is 2, as in the paper.
     pub consecutive: u8,
@@ -79,23 +79,23 @@ pub struct Robot {
     pub limits: Vec<SensorLimits>,
     /// The settings of a sketch that fires the robot's ring.
     pub firing: Sketch,
-    /// The time for which methods that fire one by one assume sound to be heard: that of its modules if they are
-    /// [given](Self::with_modules). The default is 0: no longer than sensors listen.
+    /// Time for which methods that fire one by one assume sound to be audible. The default is 0, for as long as sensors
+    /// listen; [`with_modules`](Self::with_modules) sets the modules' own time.
     pub audible: Micros,
-    /// The listening time with flow of a robot too fast to wait for all that its modules hear. `None`, the default, for
-    /// its window.
+    /// Listening time with flow, for a robot too fast to wait for everything that its modules hear. `None`, the
+    /// default, for its window.
     pub reach: Option<Micros>,
     /// P: the largest change of a foreign sound's path from one reading to the next, for rings that fire by tables.
     /// `None`, the default, for [`t_delta`](Self::t_delta).
     pub path_change: Option<Micros>,
     /// Sets of sensors that the robot's own schedule fires together, bit x for sensor x.
     pub together: Vec<u64>,
-    /// True if odometry tells the ring the expected change of a good reading by the robot's own motion.
+    /// True if odometry gives the ring the expected change of a good reading by the robot's own motion.
     pub odometry: bool,
 }
 
 impl Robot {
-    /// `sensors` transducers `spacing_rad` apart on an arc of radius `radius_m`, the middle of the arc ahead.
+    /// Makes a robot with `sensors` transducers `spacing_rad` apart on an arc of radius `radius_m`, its middle ahead.
     ///
     /// ```
     /// use eeruf_sim::{Pose, Robot, Transducer};
@@ -112,7 +112,7 @@ impl Robot {
         )
     }
 
-    /// Transducers at any places relative to the robot.
+    /// Makes a robot with transducers at any places relative to it.
     pub fn with_sensors(pose: Pose, sensors: Vec<Pose>, transducer: Transducer) -> Self {
         Self {
             sensors,
@@ -150,10 +150,10 @@ impl Robot {
         !self.limits.is_empty() || !self.together.is_empty()
     }
 
-    /// A schedule that rejects crosstalk with each sensor's `T_delta`, and the limits of each sensor.
+    /// Verifies that a schedule rejects crosstalk with each sensor's `T_delta`; returns it with all sensors' limits.
     ///
     /// # Errors
-    /// The first condition that it violates.
+    /// The first condition that the schedule violates.
     pub fn verified(
         &self,
         schedule: &AnySchedule,
@@ -161,7 +161,7 @@ impl Robot {
         self.asking(Micros::MAX, |requirements| schedule.verified_each(requirements))
     }
 
-    /// Calls a function with the sensors' needs, with no `t_delta` above `most`.
+    /// Calls a function with the sensors' requirements, with no `t_delta` above `most`.
     pub(crate) fn asking<T>(&self, most: Micros, answer: impl FnOnce(&Requirements<'_>) -> T) -> T {
         let t_delta: Vec<_> = self.limits.iter().map(|limits| limits.t_delta.min(most)).collect();
         let window: Vec<_> = self.limits.iter().map(|limits| limits.window).collect();
@@ -174,7 +174,7 @@ impl Robot {
         })
     }
 
-    /// Returns the robot with its sensors at these heights in metres, one each; if all are [`DEFAULT_HEIGHT_M`], none
+    /// Returns the robot with its sensors at these heights in metres, one each. If all are [`DEFAULT_HEIGHT_M`], none
     /// are stored, so that equal robots compare as equal.
     #[must_use]
     pub fn with_heights(self, heights_m: Vec<f64>) -> Self {
@@ -199,7 +199,7 @@ impl Robot {
         let blankings = modules.iter().map(|module| Micros::new(module.blanking_us)).collect();
         let hears = modules.iter().map(|module| SpeedOfSound::AT_20_CELSIUS.echo_time(module.hears_to_mm)).max();
         self.audible = hears.unwrap_or_default();
-        // Equal robots are equal; modules that differ in more than their transducer are kept.
+        // Modules are kept only if they differ in more than their transducer, so that equal robots compare as equal.
         self.modules.clear();
         if !(alike && self.module_of(0) == first) {
             self.modules = modules;
@@ -207,7 +207,7 @@ impl Robot {
         self.with_blankings(blankings)
     }
 
-    /// Returns the robot with this gain for all sensors, and this pattern near 90 degrees; `None` keeps their own.
+    /// Returns the robot with this gain and this pattern near 90 degrees for all sensors; `None` keeps their own.
     #[must_use]
     pub fn with_pattern(mut self, gain: Option<GainProfile>, beam: Option<Beam>) -> Self {
         let own = self.transducer;
@@ -227,22 +227,22 @@ impl Robot {
         self
     }
 
-    /// The transducer of a sensor.
+    /// Returns the transducer of a sensor.
     pub fn transducer_of(&self, sensor: usize) -> Transducer {
         self.modules.get(sensor).map_or(self.transducer, Transducer::of)
     }
 
-    /// The transducers of all sensors.
+    /// Returns the transducers of all sensors.
     pub fn transducers(&self) -> impl Iterator<Item = Transducer> + '_ {
         (0..self.sensors.len()).map(|sensor| self.transducer_of(sensor))
     }
 
-    /// Deaf time of a sensor after it has fired.
+    /// Returns the deaf time of a sensor after it has fired.
     pub fn blanking_of(&self, sensor: usize) -> Micros {
         self.blankings.get(sensor).copied().unwrap_or(self.blanking)
     }
 
-    /// The module of a sensor: its own, or the preset of its transducer, or the nearest equivalent.
+    /// Returns the module of a sensor: its own, or the preset of its transducer, or the nearest equivalent.
     pub fn module_of(&self, sensor: usize) -> Module {
         if let Some(module) = self.modules.get(sensor) {
             return *module;
@@ -256,13 +256,13 @@ impl Robot {
         })
     }
 
-    /// The longest rest that one of its modules needs from trigger to trigger.
+    /// Returns the longest rest from trigger to trigger that one of the robot's modules needs.
     pub fn module_rest(&self) -> Micros {
         (0..self.sensors.len()).map(|sensor| Micros::new(self.module_of(sensor).rest_us)).max().unwrap_or_default()
     }
 
-    /// Returns the robot with its settings for flow. With a [`reach`](Self::reach), its quiet lasts no longer than that
-    /// and the tail, so it believes no single echo, alone or not.
+    /// Returns the robot with its settings for flow. With a [`reach`](Self::reach), its quiet lasts no longer than the
+    /// reach and the tail, so the robot never believes a single echo, even alone.
     #[must_use]
     pub fn by_flow(self) -> Self {
         let Some(reach) = self.reach.filter(|&reach| reach < self.window) else { return self };
@@ -270,37 +270,37 @@ impl Robot {
         Self { window: reach, audible: reach.saturating_add(tail), others: true, ..self }
     }
 
-    /// The height of a sensor above the floor, in metres.
+    /// Returns the height of a sensor above the floor, in metres.
     pub fn height_m(&self, sensor: usize) -> f64 {
         self.heights_m.get(sensor).copied().unwrap_or(DEFAULT_HEIGHT_M)
     }
 
-    /// The amplitude for [`coupling_db`](Self::coupling_db); 0 for none.
+    /// Returns the amplitude for [`coupling_db`](Self::coupling_db); 0 without coupling.
     pub(crate) fn coupling(&self) -> f64 {
         self.coupling_db.map_or(0.0, |db| libm::exp10(db / 20.0))
     }
 
-    /// The radius in metres of the smallest disc about the robot's middle that holds all its sensors.
+    /// Returns the radius in metres of the smallest disc about the robot's middle that contains all its sensors.
     pub fn radius_m(&self) -> f64 {
         self.sensors.iter().map(|sensor| offset(sensor).norm()).fold(0.0, f64::max)
     }
 
-    /// The outline that must be free: its body, or without one the disc that holds all its sensors.
+    /// Returns the outline that must be free: the body, or without one the disc that contains all sensors.
     pub fn outline(&self) -> Body {
-        // A body without extent still stands somewhere.
+        // A body without extent still needs a free place.
         self.body.unwrap_or(Body::Disc(self.radius_m().max(1e-6)))
     }
 }
 
-/// The place of a sensor relative to its robot's middle.
+/// Returns the position of a sensor relative to its robot's middle.
 pub(crate) fn offset(sensor: &Pose) -> Vector {
     sensor.translation.vector
 }
 
-/// Transducers evenly spread over an arc of a circle, facing outwards.
+/// Returns transducers evenly spread over an arc of a circle, facing outwards.
 ///
-/// `pose` is the robot's; the first sensor stands `first_rad` from its heading, the next ones `spacing_rad` further
-/// each.
+/// `pose` is the robot's pose. The first sensor stands `first_rad` from its heading, each next one `spacing_rad`
+/// further.
 ///
 /// ```
 /// use eeruf_sim::{Pose, ring_of};

@@ -3,27 +3,27 @@
 use eeruf_core::{MAX_PERIOD, Micros};
 use serde::{Deserialize, Serialize};
 
-/// The settings of the [methods](crate::Method::is_sketch) that imitate today's rings: `[firing]` in scene files.
+/// Settings of the [methods](crate::Method::is_sketch) that imitate today's rings: `[firing]` in scene files.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sketch {
     /// Longest wait for a sensor; `None` for its listening time.
     pub timeout: Option<Micros>,
     /// The time from an echo, or from the time-out, to the next trigger.
     pub pause: Micros,
-    /// The least time from one trigger to the next in turn, like that of a ping timer; for free-running modules their
-    /// cycle, if it is longer than their rest.
+    /// The least time from one trigger to the next in turn, as set by a ping timer. For free-running modules it is
+    /// their cycle, if longer than their rest.
     pub turn: Micros,
-    /// The least time from one trigger of a sensor to its next. `None` for the modules' own rest with a sync line and
-    /// for free-running modules, otherwise for 0.
+    /// The least time from one trigger of a sensor to its next. `None` for the modules' own rest (with a sync line or
+    /// free-running modules) or for 0 (otherwise).
     pub rest: Option<Micros>,
     /// The sensors of each array, in the order in which they fire. Empty for two halves of the ring.
     pub arrays: Vec<Vec<u8>>,
-    /// The sensors that fire together, group after group. Empty for groups as far apart as the robot's `neighbours`.
+    /// The groups of sensors that fire together, in turn. Empty for groups as far apart as the robot's `neighbours`.
     pub groups: Vec<Vec<u8>>,
-    /// The number of consecutive readings that must agree: 1 to believe each as it comes, up to 8.
+    /// The number of consecutive readings that must agree, 1 to 8; with 1 each reading is believed.
     pub consecutive: u8,
-    /// The largest deviation of a free-running module's cycle, in millionths; each module has its own. The default is a
-    /// choice: 5000, that of a ceramic resonator.
+    /// The largest deviation of a free-running module's cycle, in parts per million; each module has its own deviation.
+    /// The default, 5000, is a choice: that of a ceramic resonator.
     pub drift_ppm: f64,
     /// The firing times of the method `table`; `None` for the robot's own schedule.
     pub table: Option<FiringTable>,
@@ -58,8 +58,8 @@ pub struct FiringTable {
 }
 
 impl Sketch {
-    /// Finds the first setting that is invalid for this many sensors with this window: its name in files, its value,
-    /// and the expectation.
+    /// Finds the first setting that is invalid for this many sensors with this window; returns its name in files, its
+    /// value, and the expected range.
     pub(super) fn check(&self, sensors: usize, window: Micros) -> Result<(), (&'static str, f64, &'static str)> {
         let us = |time: Micros| f64::from(time.as_micros());
         if let Some(timeout) = self.timeout.filter(|&timeout| timeout == Micros::ZERO || timeout > window) {

@@ -1,5 +1,5 @@
-//! A world: a scene with robots, noise, and the seed of all that is random. It is checked once, so that a simulation
-//! can fail only because of the method.
+//! A world: a scene with robots, noise, and the seed of all random values. It is checked once, so that a simulation can
+//! fail only because of the method.
 
 use eeruf_core::{Micros, Requirements};
 
@@ -15,9 +15,9 @@ use crate::{
     tracing::MAX_ORDER,
 };
 
-/// The default order to which a world follows sound: that of Set I.
+/// The default of a world's [`max_order`](World::max_order): as in Set I.
 pub const DEFAULT_ORDER: u32 = 6;
-/// Number of steps on the way of a door or a leg that are checked before a simulation begins.
+/// Number of positions along the way of a door or a leg that are checked before a simulation begins.
 const PLACES_TRIED: u32 = 16;
 /// The longest time for which a path may fade in the same way, in seconds: a choice, practically infinite.
 const MAX_FADING_TIME_S: f64 = 3600.0;
@@ -40,7 +40,7 @@ impl World {
     /// [`Physics::DEFAULT`].
     ///
     /// # Errors
-    /// The first thing found wrong, naming the robot by its index.
+    /// The first error found, naming the robot by its index.
     ///
     /// ```
     /// use eeruf_sim::*;
@@ -72,7 +72,7 @@ impl World {
         })
     }
 
-    /// Returns the world with sound followed up to another order.
+    /// Returns the world with another largest number of bounces.
     ///
     /// # Errors
     /// [`WorldError::Order`] above [`MAX_ORDER`].
@@ -83,8 +83,8 @@ impl World {
         Ok(Self { max_order, ..self })
     }
 
-    /// Returns the world in which sound that meets a pole is followed only up to this order, at most that of all other
-    /// sound. Such sound is faint, and by far the most expensive to follow.
+    /// Returns the world in which sound that meets a pole is followed for at most this many bounces, and no more than
+    /// all other sound. Such sound is faint, and by far the most expensive to follow.
     ///
     /// # Errors
     /// [`WorldError::Order`] above [`MAX_ORDER`].
@@ -131,8 +131,8 @@ impl World {
     /// Returns the world with these faults.
     ///
     /// # Errors
-    /// [`WorldError::Fault`] for an invalid one, [`WorldError`] for a door or a leg that the scene has no room for
-    /// somewhere on its way.
+    /// [`WorldError::Fault`] for an invalid fault; another [`WorldError`] for a door or a leg without enough room in
+    /// the scene somewhere on its way.
     pub fn with_faults(self, faults: Vec<Fault>) -> Result<Self, WorldError> {
         faults.iter().enumerate().try_for_each(|(index, fault)| fault.check(index, &self.robots))?;
         for robot in 0..self.robots.len() {
@@ -167,7 +167,7 @@ impl World {
         &self.robots
     }
 
-    /// Robots, from 0, whose `t_delta` is too large for their schedules, each with a warning.
+    /// Returns a warning for each robot, counted from 0, whose `t_delta` is too large for its schedule.
     pub fn doubts(&self) -> Vec<(usize, String)> {
         let nothing_asked = Requirements::new(Micros::ZERO);
         let doubt = |(index, robot): (usize, &Robot)| {
@@ -189,17 +189,17 @@ impl World {
         self.noise
     }
 
-    /// The most bounces that sound is followed for.
+    /// Largest number of bounces of sound.
     pub fn max_order(&self) -> u32 {
         self.max_order
     }
 
-    /// Largest number of bounces for which sound is followed if one of them is at a pole.
+    /// Largest number of bounces of sound that meets a pole.
     pub fn pole_order(&self) -> u32 {
         self.pole_order.min(self.max_order)
     }
 
-    /// Seed of all that is random.
+    /// Seed of all random values.
     pub fn seed(&self) -> u64 {
         self.seed
     }
@@ -209,7 +209,7 @@ impl World {
         self.robots.iter().any(|robot| !robot.motion.is_still())
     }
 
-    /// The places and headings of one robot's sensors at a time in seconds; none for a robot out of range.
+    /// Returns the poses of one robot's sensors at a time in seconds; none for a robot out of range.
     pub fn sensors(&self, robot: usize, time_s: f64) -> impl Iterator<Item = Pose> + '_ {
         self.robots.get(robot).into_iter().flat_map(move |robot| {
             let pose = robot.motion.at(&robot.pose, time_s).pose;

@@ -7,7 +7,7 @@ use toml::{Spanned, Table, Value};
 use super::source::Source;
 use crate::world::fault::{Fault, FaultKind};
 
-/// Keys of a fault of any kind; [`FaultKind`] has what each kind needs of it.
+/// Keys of a fault of any kind; see [`FaultKind`] for the keys of each kind.
 #[derive(Deserialize, Serialize)]
 #[serde(deny_unknown_fields)]
 pub(super) struct FaultFile {
@@ -43,7 +43,7 @@ const KEYS: [&str; 15] = [
 ];
 
 impl FaultFile {
-    /// The keys that a kind needs besides `kind`, `robot`, `sensors`, `from_s` and `to_s`.
+    /// Returns the keys that a kind needs besides `kind`, `robot`, `sensors`, `from_s` and `to_s`.
     fn needs(kind: &str) -> Option<&'static [&'static str]> {
         Some(match kind {
             "lost" | "uniform_noise" => &["share"],
@@ -91,10 +91,10 @@ fn set(table: &mut Table, key: &str, value: impl Into<Value>) {
 }
 
 impl Fault {
-    /// The faults of these tables, with the keys of `[[fault]]` in a scene file.
+    /// Reads faults from tables with the keys of `[[fault]]` in a scene file.
     ///
     /// # Errors
-    /// The error of the first invalid one.
+    /// The error of the first invalid table.
     ///
     /// ```
     /// use eeruf_sim::Fault;
@@ -116,9 +116,9 @@ impl Fault {
         each.collect::<Result<_, _>>().map_err(|error| error.message().to_owned())
     }
 
-    /// The table `[[fault]]` of this fault, as in a scene file.
+    /// Returns this fault as a table `[[fault]]` of a scene file.
     pub fn to_table(&self) -> Table {
-        // A kind is a table of numbers and a schedule, which TOML has.
+        // Each kind consists of numbers and a schedule, which TOML supports.
         let mut table = Table::try_from(&self.kind).unwrap_or_default();
         if !self.kind.is_of_scene() {
             set(&mut table, "robot", self.robot as i64);

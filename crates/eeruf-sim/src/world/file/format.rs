@@ -1,4 +1,4 @@
-//! The tables and keys of a world file for serde, and the meaning of their short forms.
+//! The tables and keys of a world file for serde, and the expansion of their short forms.
 
 use eeruf_core::Micros;
 use eeruf_modules::ModulesFile;
@@ -36,7 +36,7 @@ pub(super) struct WorldFile {
     pub(super) faults: Vec<Spanned<FaultFile>>,
 }
 
-/// Reads a seed: a number, or a text above 2^63, where TOML's numbers end.
+/// Reads a seed: a number, or from 2^63 on, where TOML's numbers end, a text.
 fn seed<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u64, D::Error> {
     #[derive(Deserialize, Serialize)]
     #[serde(untagged, expecting = "expected a whole number from 0 to 18446744073709551615")]
@@ -50,7 +50,7 @@ fn seed<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u64, D::Error> {
     }
 }
 
-/// Writes a seed; TOML's whole numbers end at 2^63.
+/// Writes a seed: a text from 2^63 on, where TOML's whole numbers end.
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "as serde calls it")]
 fn write_seed<S: Serializer>(seed: &u64, serializer: S) -> Result<S::Ok, S::Error> {
     match i64::try_from(*seed) {
@@ -143,7 +143,7 @@ struct SurfaceFile {
 }
 
 impl HeightFile {
-    /// Floor and ceiling; `None` for a flat scene.
+    /// Returns floor and ceiling; `None` for a flat scene.
     pub(super) fn room(&self) -> Option<Room> {
         let surface = |default: Material, file: &Option<SurfaceFile>| {
             file.as_ref().map_or(default, |file| material(default, file.material, file.reflection, file.roughness_m))
@@ -238,7 +238,7 @@ pub(super) struct RobotFile {
     #[serde(default, deserialize_with = "ring", skip_serializing)]
     pub(super) ring: Option<RingKey>,
     pub(super) sensors: Option<Vec<PoseFile>>,
-    /// The module, called `transducer` in older files.
+    /// The module, named `transducer` in older files.
     #[serde(alias = "transducer")]
     pub(super) module: Option<ModulesFile>,
     pub(super) gain: Option<String>,
@@ -263,7 +263,7 @@ pub(super) struct RobotFile {
     pub(super) firing: Option<SketchFile>,
     pub(super) neighbours: Option<u8>,
     pub(super) consecutive: Option<u8>,
-    /// A key of older files, which is refused by name.
+    /// A key of older files, which is refused with its name.
     #[serde(skip_serializing)]
     pub(super) patience: Option<serde::de::IgnoredAny>,
     #[serde(default)]
@@ -285,7 +285,7 @@ pub(super) enum RingKey {
     File(String),
 }
 
-/// Reads a ring key. It is written by hand, so that the error about a wrong table is the table's.
+/// Reads a ring key. The function is written by hand, so that an invalid table gives the error of its own type.
 fn ring<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<RingKey>, D::Error> {
     let key = match toml::Value::deserialize(deserializer)? {
         toml::Value::String(name) => RingKey::File(name),
@@ -319,12 +319,12 @@ impl PoseFile {
     }
 }
 
-/// An angle in degrees or radians, or none.
+/// Returns an angle in radians, given in radians or degrees; 0 if neither is given.
 pub(super) fn radians(deg: Option<f64>, rad: Option<f64>) -> f64 {
     rad.or_else(|| deg.map(f64::to_radians)).unwrap_or(0.0)
 }
 
-/// A material by its name, with its own values where given.
+/// Returns a material by its name, with its own values if given.
 pub(super) fn material(
     default: Material,
     named: Option<MaterialFile>,

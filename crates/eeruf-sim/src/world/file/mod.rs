@@ -33,16 +33,16 @@ pub use ring_file::{ReadRing, cover_motion};
 pub use write::{heading_rad, world_file};
 
 impl World {
-    /// Reads a world from a TOML file. Schedules that it names are looked for beside it; ring files need a
+    /// Reads a world from a TOML file. Schedules that it names are searched for in its folder; ring files need a
     /// [reader](Self::from_text_with).
     ///
     /// # Errors
-    /// The first thing found wrong.
+    /// The first error found.
     pub fn from_toml(file: &Path) -> Result<Self, FileError> {
         Self::parse(&Source::read(file)?, no_reader)
     }
 
-    /// Reads a text; `file` is named in errors, and schedules are looked for beside it.
+    /// Reads a text; `file` is named in errors, and schedules are searched for in its folder.
     ///
     /// # Errors
     /// See [`from_toml`](Self::from_toml).
@@ -63,7 +63,7 @@ impl World {
         Self::from_text_with(file, text, no_reader)
     }
 
-    /// Reads a text, with a reader for the ring files that robots name, which are looked for beside it too.
+    /// Reads a text, with a reader for ring files that robots name, which are also searched for in the file's folder.
     ///
     /// # Errors
     /// See [`from_toml`](Self::from_toml).
@@ -97,19 +97,19 @@ pub struct WorldParts {
     pub noise: Noise,
     /// The effects.
     pub physics: Physics,
-    /// Largest number of bounces for which sound is followed.
+    /// Largest number of bounces of sound.
     pub max_order: u32,
-    /// Seed of all that is random.
+    /// Seed of all random values.
     pub seed: u64,
-    /// Faults.
+    /// The faults.
     pub faults: Vec<Fault>,
 }
 
 impl WorldParts {
-    /// Reads the parts from a text; `file` is named in errors, and schedules are looked for beside it.
+    /// Reads the parts from a text; `file` is named in errors, and schedules are searched for in its folder.
     ///
     /// # Errors
-    /// Those of [`World::from_text`], for what is wrong with the text or the scene.
+    /// Errors of [`World::from_text`] about the text or the scene.
     ///
     /// ```
     /// use eeruf_sim::WorldParts;
@@ -123,7 +123,7 @@ impl WorldParts {
         Self::from_text_with(file, text, no_reader)
     }
 
-    /// Reads a text, with a reader for the ring files that robots name, which are looked for beside it too.
+    /// Reads a text, with a reader for ring files that robots name, which are also searched for in the file's folder.
     ///
     /// # Errors
     /// See [`World::from_text`].
@@ -156,7 +156,7 @@ impl WorldParts {
     }
 }
 
-/// The part of the file that an error is about, and its field.
+/// Returns the part of the file to which an error belongs, and its field.
 fn blame(file: &WorldFile, error: &WorldError) -> (Option<Range<usize>>, &'static str) {
     let robot = |robot: usize| file.robots.get(robot).map(Spanned::span);
     match *error {

@@ -1,4 +1,4 @@
-//! Robots from ring files, read by the caller's reader, which knows more about rings than a simulator needs.
+//! Robots from ring files. The caller supplies the reader, which knows more about rings than a simulator needs.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ use crate::{
     world::robot::Robot,
 };
 
-/// A reader of ring files: from the file and its text to the robot.
+/// A reader of ring files: makes the robot from the file's path and text.
 pub type ReadRing = fn(&Path, &str) -> Result<RobotRing, FileError>;
 
 /// The reader for callers without one, which fails.
@@ -25,10 +25,10 @@ pub(super) fn no_reader(file: &Path, _: &str) -> Result<RobotRing, FileError> {
 }
 
 impl Robot {
-    /// The robot of a ring file at a place, with its sensors where `poses` are, or else where the file has them.
+    /// Makes the robot of a ring file at a place, with its sensors at `poses` if given, or else at the file's poses.
     ///
     /// # Errors
-    /// The key that is missing, or does not fit its number of sensors.
+    /// A missing key, or a key that does not fit the number of sensors.
     pub fn of_ring(ring: &RobotRing, pose: Pose, poses: Option<Vec<Pose>>) -> Result<Self, String> {
         let heights_m = if poses.is_none() { ring.heights_m.clone() } else { vec![] };
         let poses = poses.unwrap_or_else(|| ring.poses.iter().map(pose_of).collect());
@@ -56,8 +56,8 @@ impl Robot {
     }
 }
 
-/// Adds to a robot's `T_delta` and `path_change` the greatest change of readings between two firings of a sensor at
-/// this speed without odometry: `2 v (T_p + max |d|) / c` by its schedule, or by the paper's waits at its period.
+/// Increases a robot's `T_delta` and `path_change` by the greatest change of readings between two firings of a sensor
+/// at this speed without odometry: `2 v (T_p + max |d|) / c` by its schedule, or by the paper's waits at its period.
 pub fn cover_motion(robot: &mut Robot, speed_m_s: f64) {
     let gap = robot.schedule.map_or_else(
         || Micros::new((u64::from(robot.period.as_micros()) * 5 / 4) as u32),

@@ -15,7 +15,7 @@ use crate::{
     world::{motion::Motion, robot::Robot},
 };
 
-/// Builds the robot with this index; it uses the common firing unless it has its own.
+/// Builds the robot with this index, with the common firing unless it has its own.
 pub(super) fn robot(
     source: &Source,
     index: usize,
@@ -35,7 +35,7 @@ pub(super) fn robot(
     let (mut speed_m_s, mut audible) = (0.0, None);
     let mut robot = match (&file.ring, &file.sensors) {
         (Some(RingKey::Arc(ring)), None) => {
-            // Checked here, before as many poses are made.
+            // The number is checked here, before as many poses are made.
             if ring.sensors == 0 || ring.sensors > MAX_SENSORS {
                 return Err(fail("ring", format!(" has {} sensors; expected 1 to {MAX_SENSORS}", ring.sensors)));
             }

@@ -10,7 +10,7 @@ use crate::scene::{Air, Material, Pole, Scene, SceneError, Wall};
 /// Builds the scene.
 pub(super) fn scene(source: &Source, file: &WorldFile) -> Result<Scene, FileError> {
     let mut walls = Vec::new();
-    // The entry that each wall came from.
+    // Entry of the file that each wall comes from.
     let mut entries = Vec::new();
     for (index, entry) in file.walls.iter().enumerate() {
         let wall = entry.get_ref();

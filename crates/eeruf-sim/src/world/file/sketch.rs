@@ -1,4 +1,4 @@
-//! `[firing]` of a world file: the way in which its robots are fired today.
+//! `[firing]` of a world file: today's ways of firing its robots.
 
 use eeruf_core::{Micros, Phase};
 use eeruf_files::{FileError, ScheduleFile, explain};
@@ -53,7 +53,7 @@ pub(super) fn sketch(source: &Source, file: &SketchFile) -> Result<Sketch, FileE
     })
 }
 
-/// The firing times of a schedule of two phases, or of many.
+/// Returns the firing times of a schedule of two phases, or of many.
 fn table_of(table: Table) -> Result<FiringTable, String> {
     if table.contains_key("step_us") {
         return Err(
@@ -70,10 +70,10 @@ fn table_of(table: Table) -> Result<FiringTable, String> {
 }
 
 impl Sketch {
-    /// Reads the table `[firing]` of a scene file. A schedule that it names is looked for in the present folder.
+    /// Reads the table `[firing]` of a scene file. A schedule that it names is searched for in the current folder.
     ///
     /// # Errors
-    /// A message that names the key, its value and what is expected.
+    /// A message that names the key, its value and the expected value.
     ///
     /// ```
     /// use eeruf_sim::Sketch;
@@ -88,15 +88,15 @@ impl Sketch {
         sketch(&source, &file).map_err(|error| error.message().to_owned())
     }
 
-    /// The table `[firing]` of a scene file for these settings: the differences from the default.
+    /// Returns the table `[firing]` of a scene file for these settings: the differences from the default.
     pub fn to_table(&self) -> Table {
-        // Numbers, lists and tables, which TOML has.
+        // The settings are numbers, lists and tables, which TOML supports.
         Table::try_from(SketchFile::from(self)).unwrap_or_default()
     }
 }
 
 impl From<&Sketch> for SketchFile {
-    /// Differences from the default.
+    /// Keeps the differences from the default.
     fn from(sketch: &Sketch) -> Self {
         let default = Sketch::default();
         let above_zero = |time: Micros| (time != Micros::ZERO).then_some(time);

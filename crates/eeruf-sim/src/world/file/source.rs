@@ -23,7 +23,7 @@ impl Source {
         }
     }
 
-    /// The file of this name beside this one.
+    /// Reads the file of this name in the same folder.
     pub(super) fn beside(&self, name: &str) -> Result<Self, FileError> {
         Self::read(&self.file.parent().unwrap_or(Path::new("")).join(name))
     }
@@ -32,7 +32,7 @@ impl Source {
         parse(&self.text).map_err(|error| error.in_file(&self.file))
     }
 
-    /// A schedule in the file itself, or the name of a file beside it.
+    /// Reads a schedule in the file itself, or in another file of the same folder.
     pub(super) fn schedule(&self, value: &Spanned<Value>) -> Result<AnySchedule, FileError> {
         let here = |message: String| self.error(Some(value.span()), "", format!("schedule: {message}"));
         if let Value::String(name) = value.get_ref() {
@@ -44,18 +44,18 @@ impl Source {
         file.schedule().map_err(here)
     }
 
-    /// An error about a field within a part of the text; without a line of its own, at the part's first line.
+    /// Makes an error about a field within a part of the text, at the field's line or else at the part's first line.
     pub(super) fn error(&self, part: Option<Range<usize>>, field: &str, message: impl fmt::Display) -> FileError {
         FileError::new(&self.file, message).at_line(part.map(|part| self.line(part, field)))
     }
 
-    /// The line on which a field is set: it begins with the field's name or has it in braces. Entries of arrays of
-    /// tables begin at their header.
+    /// Returns the line on which a field is set: it begins with the field's name or has it in braces. Entries of arrays
+    /// of tables begin at their header.
     pub(super) fn line(&self, part: Range<usize>, field: &str) -> u64 {
         let end = part.end.min(self.text.len());
         let start = part.start.min(end);
         let first = 1 + self.text.get(..start).map_or(0, |before| before.matches('\n').count());
-        // The span of a table may end with its header; what follows it up to the next header belongs to it.
+        // The span of a table may end with its header, but the lines up to the next header belong to it.
         let rest = self.text.get(start..).unwrap_or("");
         let own = rest.lines().enumerate().take_while(|(k, line)| *k == 0 || !line.trim_start().starts_with("[["));
         let sets = |line: &str| line.split(['{', ',']).any(|item| item.trim_start().starts_with(field));

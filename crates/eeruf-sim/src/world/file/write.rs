@@ -17,9 +17,9 @@ use crate::{
     world::{fault::Fault, motion::Motion, noise::Noise, robot::Robot, sketch::Sketch},
 };
 
-/// Writes the world file of a scene with these robots, noise, physics, order, seed and faults: reading it again gives
-/// the same, bit for bit, with the schedules in it. Only the last bit of a heading may move, and only the first time;
-/// see [`heading_rad`].
+/// Writes the world file of a scene with these robots, noise, physics, order, seed and faults. Reading it again gives
+/// an equal world, bit for bit, with the schedules in it. Only the last bit of a heading may change, and only the first
+/// time; see [`heading_rad`].
 pub fn world_file(
     scene: &Scene,
     robots: &[Robot],
@@ -47,7 +47,7 @@ pub fn world_file(
         robots: robots.iter().map(|robot| nowhere(RobotFile::from(robot))).collect(),
         faults: vec![],
     };
-    // Numbers, words and tables, which TOML has. Their keys are in order in a table.
+    // The file consists of numbers, words and tables, which TOML supports. A table sorts its keys.
     let mut file = Table::try_from(file).unwrap_or_default();
     if !faults.is_empty() {
         file.insert("fault".to_owned(), faults.iter().map(Fault::to_table).collect::<Vec<_>>().into());
@@ -55,7 +55,7 @@ pub fn world_file(
     file.to_string()
 }
 
-/// Wraps values that are not in a text yet.
+/// Wraps values that come from no text.
 fn nowhere<T>(of: T) -> Spanned<T> {
     Spanned::new(0..0, of)
 }
@@ -92,17 +92,17 @@ impl From<&Pose> for PoseFile {
     }
 }
 
-/// An angle whose pose equals this one bit for bit, if there is one nearby: a pose stores sine and cosine, of which
-/// there are more than angles. Otherwise its pose differs in the last bits, and its own heading is that angle again.
+/// Returns an angle whose pose equals this one bit for bit, if one is nearby: a pose stores sine and cosine, of which
+/// there are more than angles. Otherwise the angle's pose differs in the last bits, and gives the angle again.
 pub fn heading_rad(pose: &Pose) -> f64 {
     let angle = pose.rotation.angle();
     exact_angle(pose).or_else(|| exact_angle(&Pose::rotation(angle))).unwrap_or(angle)
 }
 
-/// An angle whose sine and cosine are those of this pose.
+/// Returns an angle whose sine and cosine are exactly those of this pose.
 fn exact_angle(pose: &Pose) -> Option<f64> {
     let angle = pose.rotation.angle();
-    // What was given may have been up to a turn more or less.
+    // The original angle may have been up to a turn more or less.
     for turned in [0.0, core::f64::consts::TAU, -core::f64::consts::TAU] {
         let (mut above, mut below) = (angle + turned, angle + turned);
         for _ in 0..8 {
@@ -132,7 +132,7 @@ impl From<&Body> for BodyFile {
 }
 
 impl MotionFile {
-    /// Motion in a file's form; `None` for a robot that stands.
+    /// Converts a motion to a file's form; `None` for a robot that stands.
     fn of(motion: &Motion) -> Option<Self> {
         let none = Self { velocity_m_s: None, turn_deg_s: None, turn_rad_s: None, waypoints_m: None, speed_m_s: None };
         match motion {
@@ -154,7 +154,7 @@ impl From<&Robot> for RobotFile {
         let (module, gain, beam) = if robot.modules.is_empty() {
             let Transducer { gain, beam, .. } = robot.transducer;
             let module = robot.module_of(0);
-            // A preset but for these two, which have keys of their own.
+            // A preset may differ in gain and beam, which have keys of their own.
             let preset = find(module.name).filter(|preset| Module { gain, beam, ..**preset } == module);
             let module = preset.copied().unwrap_or(module);
             (ModulesFile::All(module), Some(gain.name().to_owned()), Some(beam.name().to_owned()))

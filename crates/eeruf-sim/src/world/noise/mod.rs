@@ -1,7 +1,7 @@
 //! Noise: fading and jitter of echoes, bursts from outside, and the random numbers behind them.
 //!
-//! The noise of one arrival is a function of the seed, the firing and the path alone ([`Random::of`]), so that it does
-//! not depend on the order of arrivals, on the method, or on the number of threads.
+//! The noise of an arrival depends only on the seed, the firing and the path ([`Random::of`]). So it does not depend on
+//! the order of arrivals, on the method, or on the number of threads.
 
 mod normal;
 
@@ -20,9 +20,9 @@ pub struct Noise {
     pub fading_db_rms: f64,
     /// Root mean square of each arrival's change of time, in microseconds.
     pub jitter_us_rms: f64,
-    /// Mean number of bursts from outside (compressed air, keys, another make of sensor) that are heard in a second.
+    /// Mean number of bursts from outside (compressed air, keys, another make of sensor) that are heard per second.
     pub bursts_per_s: f64,
-    /// Level above the threshold, in dB.
+    /// Level of a burst above the threshold, in dB.
     pub burst_db: f64,
 }
 

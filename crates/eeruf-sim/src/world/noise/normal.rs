@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 /// Number of equal parts of the normal distribution in the table.
 const SHARES: usize = 1024;
-/// Largest magnitude of a number drawn here; one in 16,000 would exceed it.
+/// Largest magnitude of a drawn number; one normal number in 16,000 would exceed it.
 pub(crate) const FARTHEST: f32 = 4.0;
 
 /// A generator of normal numbers from a table of the distribution's quantiles, interpolated linearly.
@@ -12,7 +12,7 @@ pub(crate) const FARTHEST: f32 = 4.0;
 pub(crate) struct Normal([f32; SHARES + 1]);
 
 impl Normal {
-    /// The table, made on demand.
+    /// Returns the table, which is made on demand.
     pub(crate) fn shared() -> &'static Self {
         static NORMAL: LazyLock<Normal> = LazyLock::new(Normal::new);
         &NORMAL
@@ -30,7 +30,7 @@ impl Normal {
         Self(quantiles)
     }
 
-    /// Two independent numbers of mean 0 and standard deviation 1 from 64 random bits.
+    /// Returns two independent numbers of mean 0 and standard deviation 1 from 64 random bits.
     #[inline]
     pub(crate) fn pair(&self, bits: u64) -> [f32; 2] {
         [self.one((bits >> 32) as u32), self.one(bits as u32)]
@@ -38,7 +38,7 @@ impl Normal {
 
     #[inline]
     fn one(&self, bits: u32) -> f32 {
-        // The upper ten bits name a share, so the index and the next are in range.
+        // The upper ten bits select a share, so the index and the next are in range.
         let share = (bits >> 22) as usize;
         let within = (bits & 0x3f_ffff) as f32 / 4_194_304.0;
         let (low, high) = (self.0[share], self.0[share + 1]);
@@ -46,7 +46,7 @@ impl Normal {
     }
 }
 
-/// The standard normal number below which a share `p` lies, by bisection of the error function.
+/// Returns the standard normal number below which a share `p` lies, by bisection of the error function.
 fn quantile_of(p: f64) -> f64 {
     let (mut low, mut high) = (-f64::from(FARTHEST), f64::from(FARTHEST));
     for _ in 0..60 {

@@ -1,4 +1,4 @@
-//! Amplitudes along whole paths: surfaces by their own angles, poles as waves, and many sources at once.
+//! Amplitudes along whole paths: each surface has its own angle, poles are waves, and many sources run at once.
 
 use eeruf_sim::{
     Air, Limits, Material, Paths, Point, Pole, Scene, Tracer, Transducer, Wall, paths_of_many, pole_wave_correction,
@@ -30,7 +30,7 @@ fn roughness_counts_at_each_wall_by_its_own_angle() {
     }
 }
 
-// A pole as a rigid cylinder returns 95 per cent of geometric optics.
+// A pole as a rigid cylinder returns 95 % of geometric optics.
 #[test]
 fn pole_returns_95_per_cent_of_geometric_optics() {
     let scene = Scene::new(vec![], vec![Pole::new(1.0, 0.0, 0.004)], Air::default()).unwrap();
@@ -53,7 +53,7 @@ fn many_sources_at_once_give_what_each_gives_alone() {
     let mut tracer = Tracer::new();
     let mut alone = Paths::default();
     for (source, paths) in points.iter().zip(&all) {
-        // One tracer for all, so that nothing may be left over from the question before.
+        // One tracer is used for all, so that data of an earlier query would show.
         tracer.trace(&scene, *source, &points, Limits::order(3), &mut alone).unwrap();
         assert_eq!(paths, &alone);
     }

@@ -9,8 +9,8 @@ fn field_case(name: &str) -> World {
     World::from_toml(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/field-cases").join(name)).unwrap()
 }
 
-/// The share of wrong readings in percent, with this beam and mounting; each sensor except a middle one is turned
-/// inwards by an angle, and a third one between the two is optional.
+/// Returns the share of wrong readings in per cent, with this beam and mounting. The outer sensors are turned inwards
+/// by an angle; a third sensor between the two is optional.
 fn wrong_percent(beam: Beam, coupling_db: Option<f64>, turned_deg: f64, sensors: usize) -> f64 {
     let flat = field_case("bumper-flat.toml");
     let robot = &flat.robots()[0];
@@ -61,10 +61,10 @@ fn a_tenth_of_a_degree_changes_little_under_a_continuous_beam() {
     }
 }
 
-// A stated mounting decides what neighbours hear straight along it.
+// A stated mounting decides the level between neighbours straight along it.
 #[test]
 fn stated_mounting_decides_coupling() {
-    // What is just heard 10 cm apart: 4 m and back lose 18.1 dB to spreading and 10.5 dB to the air, 10 cm gain 20 dB.
+    // This is just audible at 10 cm: 4 m and back lose 18.1 dB to spreading and 10.5 dB to the air, 10 cm gain 20 dB.
     let heard_db = 20.0 * Transducer::HC_SR04.detection_floor(Air::default()).log10() - 20.0
         + 0.1 * Air::default().absorption_db_per_m(40e3);
     for (over_db, expected) in [(-12.0, 0.0), (12.0, 100.0)] {

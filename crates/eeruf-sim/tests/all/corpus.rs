@@ -8,7 +8,7 @@ use serde_json::Value;
 
 use crate::corpus_reader::{corpus, numbers, point, receivers, rows, scene};
 
-/// One path as the corpus writes it: length, order, sequence (absent where the case is degenerate).
+/// One path of the corpus: length, order, and sequence (absent for degenerate cases).
 type Expected = (f64, u32, Option<Vec<Bounce>>);
 
 fn expected(paths: &Value) -> Vec<Expected> {
@@ -29,7 +29,7 @@ fn assert_same(id: &str, receiver: usize, found: &Paths, without_direct: bool, m
         .collect();
     assert_eq!(ours.len(), expected.len(), "{id}, receiver {receiver}: {ours:?} against {expected:?}");
     assert!(ours.is_sorted_by(|a, b| a.0 <= b.0), "{id}: sorted by length");
-    // Equal lengths may come in any order: compare by sequence where there is one, by length and order where not.
+    // Equal lengths may come in any order: compare by sequence if there is one, otherwise by length and order.
     if expected.iter().all(|e| e.2.is_some()) {
         ours.sort_by(|a, b| a.2.cmp(&b.2));
         expected.sort_by(|a, b| a.2.cmp(&b.2));
@@ -151,7 +151,7 @@ fn moving_receivers_of_the_corpus_are_reached_in_time() {
         let met = reception(image, receiver, velocity, number("c")).unwrap();
         assert!((met.time_s - number("arrival_time")).abs() < 1e-14);
         assert!((met.length_m - number("path_length")).abs() < 1e-11);
-        // The same from the path finder's answer.
+        // The path finder must give the same result.
         let wall = Wall::new(50.0, number("wall_y"), -50.0, number("wall_y"));
         let scene = Scene::new(vec![wall], vec![], Air::default()).unwrap();
         let paths = scene.paths(source, &[receiver], 1, f64::INFINITY).unwrap();

@@ -1,4 +1,4 @@
-//! Two facts of the paper, and the refusal of bad scenes.
+//! Two facts of the paper, and the rejection of invalid scenes.
 
 use eeruf_sim::{
     Air, CrosstalkMatrix, CrosstalkQuery, Faces, GainProfile, Limits, Material, PathsError, Point, Pole, Pose, Scene,
@@ -15,8 +15,8 @@ fn matrix(scene: &Scene, sensors: &[Pose]) -> CrosstalkMatrix {
     matrix
 }
 
-/// Loudest direct path in dB above the detection floor, from a sensor to the one `away` places further on a ring of 24,
-/// off a flat wall that faces the middle between the two.
+/// Returns the level of the loudest direct path in dB above the detection floor. The path leads from a sensor to the
+/// one `away` places further on a ring of 24, off a flat wall that faces the middle between the two.
 fn over_floor_db(distance_m: f64, away: usize) -> f64 {
     let wall = Wall::new(5.0, 0.3 + distance_m, -5.0, 0.3 + distance_m).with_material(Material::PERFECT);
     let scene = Scene::new(vec![wall], vec![], Air::default()).unwrap();
@@ -58,8 +58,8 @@ fn pole_of_8_mm_between_sensors_is_heard_at_1_6_m() {
     assert!(!heard_at(3.2), "but not at any distance");
 }
 
-/// Largest turn of a sensor from a smooth wall with which it still hears its echo, in whole degrees: where the region
-/// of constant depth ends.
+/// Returns the largest turn of a sensor from a smooth wall with which it still hears its echo, in whole degrees: the
+/// end of the region of constant depth.
 fn heard_up_to_deg(distance_m: f64, gain: GainProfile) -> i32 {
     let wall = Wall::new(distance_m, -9.0, distance_m, 9.0).with_faces(Faces::Both);
     let scene = Scene::new(vec![wall], vec![], Air::default()).unwrap();
@@ -168,12 +168,12 @@ fn a_wall_that_ends_on_another_splits_it() {
     let scene = Scene::new(walls, vec![], Air::default()).unwrap();
     let paths =
         scene.paths(Point::new(1.0, 1.0), &[Point::new(3.0, 1.0), Point::new(1.0, 0.4)], 1, f64::INFINITY).unwrap();
-    // Behind the partition only the ceiling helps; before it all four walls and the partition do, but the right wall.
+    // Behind the partition only the ceiling reflects; before it all walls and the partition do, except the right wall.
     assert_eq!(paths.of(0).map(|k| paths.bounces(k).to_vec()).collect::<Vec<_>>(), [[eeruf_sim::Bounce::Wall(2)]]);
     assert_eq!(paths.of(1).len(), 1 + 4);
 }
 
-// Points on walls corners and panels are answered without a panic.
+// Points on walls, corners and panels are accepted or refused without a panic.
 #[test]
 fn points_on_walls_are_answered_without_panic() {
     let mut walls: Vec<_> = Wall::polyline(&[[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0], [0.0, 0.0]]).collect();
@@ -196,7 +196,7 @@ fn points_on_walls_are_answered_without_panic() {
         for receiver in odd {
             match scene.paths(source, &[receiver], 5, f64::INFINITY) {
                 Ok(paths) => assert!(paths.length_m.iter().all(|length| length.is_finite())),
-                // The pole's axis, its rim by a rounding, and a point outside the room.
+                // These are the pole's axis, a point on its rim up to rounding, and a point outside the room.
                 Err(PathsError::Inside { at: [x, _], .. }) => assert!([3.0, 3.3, -3.0].contains(&x), "{x}"),
                 Err(error) => panic!("{error}"),
             }
@@ -204,7 +204,7 @@ fn points_on_walls_are_answered_without_panic() {
     }
 }
 
-// A hundred thousand walls work and a million crossing ones are refused.
+// A hundred thousand walls work, and a million crossing walls are refused.
 #[test]
 fn hundred_thousand_walls_work_a_million_are_refused() {
     let side = 158;
@@ -260,7 +260,7 @@ fn a_forest_and_a_hall_of_poles_are_answered_soon() {
     let open = Scene::new(vec![], forest(200), Air::default()).unwrap();
     let (source, receiver) = (Point::new(-1.0, 0.2), Point::new(-1.0, 0.9));
     let paths = open.paths(source, &[receiver], 2, f64::INFINITY).unwrap();
-    // Nothing hides a pole: one path over each, and many over two.
+    // No pole is hidden: there is one path over each, and there are many over two.
     assert_eq!(paths.order.iter().filter(|order| **order == 1).count(), 200);
     assert!(paths.len() > 10_000);
     let room = Wall::polyline(&[[-2.0, -2.0], [8.0, -2.0], [8.0, 8.0], [-2.0, 8.0], [-2.0, -2.0]]).collect();

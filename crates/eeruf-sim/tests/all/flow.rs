@@ -1,4 +1,4 @@
-//! Flow compared with one by one in rooms: properties that hold whatever the rooms.
+//! Flow compared with one by one in rooms: properties that hold in any set of rooms.
 
 use std::f64::consts::TAU;
 
@@ -10,7 +10,7 @@ use eeruf_sim::experiments::rooms::{RoomKind, RoomPlan, RoomWay};
 use eeruf_sim::modules::HC_SR04;
 use eeruf_sim::*;
 
-/// Shares of the time in percent, and echoes a second, of the first robot: means over rooms.
+/// Shares of the time in percent, and echoes per second, of the first robot: means over rooms.
 #[derive(Clone, Copy, Debug, Default)]
 struct FlowFigures {
     right: f64,
@@ -59,7 +59,7 @@ fn alone() -> Vec<RoomKind> {
 #[test]
 fn flow_standing_is_right_as_often_as_one_by_one_at_three_times_its_echoes() {
     let [one_by_one, flow] = ["sequential", "flow"].map(|name| run(&way(name), &alone(), 6, STANDS));
-    // Its first belief of an echo takes two readings, one part in 160 of these 8 s.
+    // Flow needs two readings for its first belief, one part in 160 of these 8 s.
     assert!(flow.right > one_by_one.right - 1.0, "{flow:?} {one_by_one:?}");
     assert!(flow.echoes > 3.0 * one_by_one.echoes && flow.phantom < 0.1, "{flow:?} {one_by_one:?}");
 }
@@ -84,7 +84,7 @@ fn flow_turning_is_right_as_often_as_one_by_one_at_twice_its_echoes() {
     }
 }
 
-// Beside another robot a ring that believes every echo believes the other's.
+// Beside another robot, a ring that believes every echo believes the other robot's sound.
 #[test]
 fn flow_keeps_another_robots_sound_out_whether_it_stands_or_moves() {
     let mut every_echo = way("flow");
@@ -99,7 +99,7 @@ fn flow_keeps_another_robots_sound_out_whether_it_stands_or_moves() {
     }
 }
 
-// A robot that expects others takes two echoes in a row even where the world has none, and so needs less quiet.
+// A robot that expects others needs two echoes in a row even if the world has none, and therefore less quiet.
 #[test]
 fn flow_expects_others_where_its_robot_does() {
     let mut careful = way("flow");

@@ -1,4 +1,4 @@
-//! A second opinion on the paths: plain image sources over all wall sequences, followed back from the receiver with
+//! An independent check of the paths: plain image sources over all wall sequences, followed back from the receiver with
 //! parry's ray casts. It shares no code with the beam tree; it is slow, and reports doubtful cases.
 
 use crate::random::{free_point, scene};
@@ -9,8 +9,8 @@ use parry2d_f64::{
     shape::Segment,
 };
 
-/// Change of the walls' length that must not change the answer, or a path is doubtful. Parry's hit points are good to
-/// 1e-7 m, and rays aimed at corners may leak.
+/// Change of the walls' length that must not change the answer; otherwise a path is doubtful. Parry's hit points are
+/// good to 1e-7 m, and rays aimed at corners may leak.
 const MARGIN_M: f64 = 1e-6;
 
 #[derive(Clone, Copy, PartialEq)]
@@ -94,7 +94,7 @@ fn unfold(walls: &[Wall], images: &[Point], sequence: &[usize], receiver: Point)
     }
 }
 
-/// Bounces and length.
+/// Bounces and length of a path.
 type Found = (Vec<Bounce>, f64);
 type Sequences = Vec<Found>;
 
@@ -114,7 +114,7 @@ fn image_sources(scene: &Scene, source: Point, receiver: Point, max_order: usize
     let mut found = Vec::new();
     let mut images = vec![source];
     let mut sequence: Vec<usize> = Vec::new();
-    // Counts through all sequences up to the order, like digits.
+    // The loop counts through all sequences up to the order, like digits.
     let mut next = 0;
     loop {
         if next == 0 {
@@ -149,7 +149,7 @@ fn beam_tree_agrees_with_image_sources() {
     let mut random = Random::from_state(7);
     let (mut rooms, mut doubtful, mut paths) = (0, 0, 0);
     while rooms < 3000 {
-        // Now and then a large room at a low order.
+        // Every tenth room is large, at a low order.
         let scene = scene(&mut random, if rooms % 10 == 0 { 40 } else { 7 });
         let order = match scene.walls().len() {
             ..=6 => 4,
@@ -170,8 +170,8 @@ fn beam_tree_agrees_with_image_sources() {
     assert!(paths > 20_000, "only {paths} paths compared");
 }
 
-/// The point of a circle where a broken line bounces with equal angles, by plain search: the way over the circle is
-/// shortest there.
+/// Finds the point of a circle where a broken line bounces with equal angles, by plain search: the way over the circle
+/// is shortest there.
 fn shortest_over(from: Point, to: Point, pole: &Pole) -> Option<Point> {
     let at = |angle: f64| pole.centre + eeruf_sim::Vector::new(angle.cos(), angle.sin()) * pole.radius_m;
     let way = |angle: f64| (at(angle) - from).norm() + (to - at(angle)).norm();
@@ -199,7 +199,7 @@ fn pole_paths_agree_with_a_plain_search_over_image_sources() {
         let pole = Pole::new(axis.x, axis.y, random.between(0.004, 0.05));
         let walls = bare.walls().to_vec();
         let far = |p: Point| (p - axis).norm() > 2.0 * pole.radius_m;
-        // A pole well clear of the walls and of the two points, so that the search is well behaved.
+        // The pole is well clear of the walls and of the two points, so that the search is well behaved.
         let clear = walls.iter().all(|wall| {
             let along = wall.to - wall.from;
             let s = (along.dot(&(axis - wall.from)) / along.norm_squared()).clamp(0.0, 1.0);

@@ -8,8 +8,8 @@ use eeruf_sim::*;
 const MODULE: Transducer = Transducer::POLAROID_6500;
 const ADDING: Physics = Physics { interference: true, ..Physics::PLAIN };
 
-/// One sensor, at this distance from a long wall and this height, turned from it by an angle, with nothing else but
-/// floor and ceiling.
+/// Makes a world of one sensor at this distance from a long wall and at this height, turned from the wall by an angle,
+/// with only floor and ceiling besides.
 fn before_a_wall([distance_m, height_m, heading_rad]: [f64; 3], gain: GainProfile, physics: Physics) -> World {
     let wall = Wall::new(distance_m, -20.0, distance_m, 20.0);
     let scene = Scene::new(vec![wall], vec![], Air::default()).unwrap().with_room(Some(Room::DEFAULT)).unwrap();
@@ -19,14 +19,14 @@ fn before_a_wall([distance_m, height_m, heading_rad]: [f64; 3], gain: GainProfil
     World::new(scene, vec![robot], Noise::NONE).unwrap().with_physics(physics).unwrap()
 }
 
-/// The travel time in seconds, and the amplitude relative to the threshold, of each image of the sensor in wall, floor
-/// and ceiling that is at most 10 dB below the threshold.
+/// Returns travel time in seconds and amplitude relative to the threshold for each image of the sensor in wall, floor
+/// and ceiling, down to 10 dB below the threshold.
 fn images([distance_m, height_m, heading_rad]: [f64; 3]) -> Vec<(f64, f64)> {
     let air = Air::default();
     let (c, ceiling_m) = (air.speed_of_sound(), Room::DEFAULT.ceiling_m);
     let piston = MODULE.piston(air);
     let (low, high) = (2.0 * height_m, 2.0 * (ceiling_m - height_m));
-    // The image's height above the sensor and its bounces at floor and ceiling, first at the one, then at the other.
+    // Each entry has the image's height above the sensor and the reflection of its bounces at floor and ceiling.
     let [floor, ceiling] = [Room::DEFAULT.floor.reflection, Room::DEFAULT.ceiling.reflection];
     let rises = [
         (0.0, 1.0),
@@ -53,7 +53,7 @@ fn images([distance_m, height_m, heading_rad]: [f64; 3]) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// Time in seconds at which the sum of all waves crosses the threshold, from its real and imaginary parts every 50 ns.
+/// Returns the time in seconds at which the sum of all waves, sampled every 50 ns, crosses the threshold.
 fn heard_at(sounds: &[(f64, f64)], threshold: impl Fn(f64) -> f64) -> Option<f64> {
     let burst_s = MODULE.burst_s();
     let level = |time_s: f64| {
@@ -103,7 +103,7 @@ fn readings_low_above_a_floor_are_those_of_added_waves() {
     assert!(moved > 30 && silent < 150, "{moved} of 300 move, {silent} are silent");
 }
 
-// The gain when the first of the sounds begins counts for their sum.
+// The gain at the beginning of the first sound applies to the whole sum.
 #[test]
 fn threshold_of_a_sum_follows_the_gain() {
     let mut random = Random::new(6);
@@ -137,7 +137,7 @@ fn lone_echo_reads_as_without_interference() {
     }
 }
 
-/// The percentage of first echoes that are followed within a burst by another at most 10 dB fainter.
+/// Returns the percentage of first echoes that are followed within a burst by another at most 10 dB fainter.
 fn overlapping(room: Option<f64>) -> f64 {
     let (mut firsts, mut with_another) = (0, 0);
     for number in 0..60 {

@@ -1,5 +1,5 @@
-//! Matrices and readings of flat worlds that must not change, bit for bit: those of the preset `plain`, and of
-//! `default` before worlds had heights and modules their own gain.
+//! Matrices and readings of flat worlds that must not change, bit for bit: under `plain`, and under `default` as it was
+//! before worlds had heights and modules their own gain.
 
 use std::f64::consts::{PI, TAU};
 
@@ -25,7 +25,7 @@ fn digest(numbers: impl Iterator<Item = u64>) -> u64 {
         .fold(0xcbf2_9ce4_8422_2325, |digest, byte| (digest ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
 }
 
-/// Number of readings, and digests of their times, kinds and causes. Times are whole microseconds.
+/// Returns the number of readings, and a digest of their times, kinds and causes. Times are whole microseconds.
 fn of(readings: &Readings) -> (usize, u64) {
     let us = |time: f64| if time.is_nan() { u64::MAX } else { time as u64 };
     let numbers = (0..readings.len()).flat_map(|k| {
@@ -91,8 +91,8 @@ fn readings_of_robots_that_move_among_poles_are_what_they_were() {
     assert_eq!(of(&readings), (320, 16_764_655_212_575_297_470));
 }
 
-/// Readings to the last bit, with the bounces of their paths, for methods that believe everything, so that no filter
-/// matters.
+/// Returns a digest of readings to the last bit, with the bounces of their paths, for methods that believe everything,
+/// so that no filter matters.
 fn exactly(readings: &Readings) -> (usize, u64) {
     let numbers = (0..readings.len()).flat_map(|k| {
         let times = [&readings.fired_s, &readings.t_echo_us, &readings.earliest_us, &readings.reference_us]

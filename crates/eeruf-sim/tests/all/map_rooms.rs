@@ -9,7 +9,7 @@ fn ring(radius_m: f64) -> Robot {
     Robot::ring(Pose::identity(), 12, TAU / 12.0, radius_m, Transducer::POLAROID_6500)
 }
 
-/// Places in a map whose right room has a corner that was not seen.
+/// Returns places in a map whose right room has a corner that was not seen.
 fn flat(numbers: core::ops::Range<u64>, radius_m: f64) -> Result<Vec<RoomPlan>, String> {
     let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/data/maps/flat.yaml");
     let grid = OccupancyGrid::read(file.as_ref()).unwrap();
@@ -23,7 +23,7 @@ fn places_in_a_map_are_free_and_of_their_numbers() {
     for plan in &plans {
         let at = plan.pose.translation.vector;
         rooms[usize::from(at.x > 1.0)] += 1;
-        // The walls' inner sides, the post, and the corner that was not seen.
+        // The distances are to the walls' inner sides, the post, and the corner that was not seen.
         let free_m = [at.x + 2.4, 3.9 - at.x, at.y + 1.4, 2.4 - at.y].into_iter().fold(f64::INFINITY, f64::min);
         assert!(free_m >= 0.35, "{}: {at:?}", plan.number);
         let post = Point::new(2.55, 1.95);

@@ -30,12 +30,12 @@ fn mixed_sensors_hear_whom_their_bands_allow() {
     let heard = world.ring_paths(0, 3).unwrap();
     let paths = |from: usize, to: usize| heard.between(from, to).len();
     assert!(paths(1, 0) > 0 && paths(0, 2) > 0 && paths(2, 0) > 0 && paths(3, 3) > 0);
-    // The second needs a louder sound, since it sees no farther than 2.5 m.
+    // The second sensor needs a louder sound, since it sees no farther than 2.5 m.
     assert!(paths(0, 1) < paths(1, 0));
     for other in 0..3 {
         assert_eq!((paths(other, 3), paths(3, other)), (0, 0), "sensor {other}");
     }
-    // All at once: what the simulation hears is among those paths.
+    // All sensors fire at once: every sound that the simulation hears uses one of these paths.
     let readings = simulate(&world, Method::Simultaneous, &Options::periods(50)).unwrap();
     let crosstalk = (0..readings.len()).filter(|&k| readings.cause[k] == Cause::Crosstalk);
     let ends = crosstalk.map(|k| &readings.paths[readings.path[k] as usize]);
@@ -50,7 +50,7 @@ fn each_sensor_is_deaf_for_as_long_as_its_module() {
     let robot = &world.robots()[0];
     assert_eq!([0, 1, 2, 3].map(|sensor| robot.blanking_of(sensor).as_micros()), [117, 117, 1166, 2380]);
     assert_eq!(robot.blanking.as_micros(), 117);
-    // A wall 0.25 m ahead is there for some and too near for others.
+    // A wall 0.25 m ahead is visible to some sensors and too near for others.
     let near = WORLD.replace("y_m = 0.9, heading_deg = 45.0", "y_m = 0.45, heading_deg = -90.0");
     let readings = simulate(&read(&near).unwrap(), Method::Sequential, &Options::periods(40)).unwrap();
     let nearest = |sensor: u8| {
@@ -59,7 +59,7 @@ fn each_sensor_is_deaf_for_as_long_as_its_module() {
     };
     assert!(nearest(0) < 2_000.0 && nearest(1) < 2_000.0, "{} {}", nearest(0), nearest(1));
     assert!(nearest(3) >= 2_380.0, "{}", nearest(3));
-    // What a robot says goes before.
+    // The robot's own settings take precedence.
     let longer = read(&format!("{WORLD}blanking_us = [500, 600, 700, 800]\n")).unwrap();
     assert_eq!(longer.robots()[0].blanking_of(3).as_micros(), 800);
 }
@@ -73,7 +73,7 @@ fn a_mixed_robot_is_written_as_it_is_read() {
     assert_eq!((modules[1].sees_to_mm, modules[1].no_echo.hold_us()), (2_500, 130_000));
     let again = WorldParts::from_text(Path::new("again.toml"), &parts.to_toml()).unwrap();
     assert_eq!(again.robots, parts.robots);
-    // A transducer of one's own is described by its figures.
+    // Your own transducer is described by its figures.
     let quiet = Transducer { max_range_m: 3.0, ..Transducer::HC_SR04 };
     let robot = Robot::ring(Pose::translation(1.0, 1.0), 2, 0.3, 0.2, quiet);
     assert_eq!(robot.module_of(1), Module { sees_to_mm: 3_000, ..HC_SR04 });

@@ -1,4 +1,4 @@
-//! Open simulations: step by step, steered from outside, stopped, and within the memory there is.
+//! Open simulations: step by step, steered from outside, stopped, and limited by the available memory.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
@@ -32,7 +32,7 @@ fn rows(parts: &[Readings]) -> Vec<Row> {
     parts.iter().flat_map(of_part).collect()
 }
 
-// The blocks of a simulation together are the simulation bit for bit.
+// The blocks of a simulation together equal the whole simulation, bit for bit.
 #[test]
 fn blocks_of_a_simulation_equal_the_simulation() {
     for motion in [Motion::Still, Motion::Constant { velocity: Vector::new(0.05, -0.03), turn_rad_s: 0.1 }] {
@@ -70,7 +70,7 @@ fn readings_of_short_steps_keep_no_more_room() {
     }
 }
 
-// Steps to the next reading together are the simulation bit for bit.
+// Steps to the next reading together equal the whole simulation, bit for bit.
 #[test]
 fn steps_to_next_reading_equal_the_simulation() {
     for motion in [Motion::Still, Motion::Constant { velocity: Vector::new(0.05, -0.03), turn_rad_s: 0.1 }] {
@@ -83,7 +83,7 @@ fn steps_to_next_reading_equal_the_simulation() {
         let (mut steps, mut time_s) = (Vec::new(), 0.0);
         while !simulation.is_over() {
             let step = simulation.step_to_reading(1.0, |_| true).unwrap();
-            // Two sensors may be read in one moment, each when it has heard something or its window ends.
+            // Two sensors may be read at one moment, each when it has heard something or its window ends.
             assert!(step.len() <= 2 && simulation.time_s() >= time_s);
             let listened = |fired_s: &f64| (0.002..0.0361).contains(&(simulation.time_s() - fired_s));
             assert!(step.fired_s.iter().all(listened), "{} {:?}", simulation.time_s(), step.fired_s);
@@ -93,7 +93,7 @@ fn steps_to_next_reading_equal_the_simulation() {
         assert_eq!(rows(&steps), rows(std::slice::from_ref(&whole)));
         assert!(steps.len() > 100, "{}", steps.len());
     }
-    // Nothing comes while all sensors are blanked.
+    // No reading comes while all sensors are blanked.
     let mut simulation = Simulation::new(
         Arc::new(room_with(vec![], vec![robot_at(0.0)])),
         Method::Eeruf,
@@ -106,7 +106,7 @@ fn steps_to_next_reading_equal_the_simulation() {
     assert_eq!(simulation.step_to_reading(-1.0, |_| true).unwrap_err().to_string(), "seconds is -1; expected 0 to 1e9");
 }
 
-// A steered robot drives on the arc it was given and its sensors hear that.
+// A steered robot drives on its given arc, and its sensors hear from there.
 #[test]
 fn steered_robot_drives_its_arc_and_hears_there() {
     let world = Arc::new(room_with(vec![], vec![robot_at(0.0)]));
@@ -145,7 +145,7 @@ fn what_cannot_be_simulated_is_said_and_nothing_is_lost() {
         assert_eq!(error.to_string(), message);
     }
     assert_eq!(simulation.step(0.12, |_| false).unwrap_err(), SimulationError::Stopped);
-    // A step that was stopped has not been taken.
+    // A stopped step has no effect.
     assert_eq!(simulation.step(0.24, |_| true).unwrap().len(), 8 * 4);
     let error = simulate(&world, Method::Eeruf, &Options::periods(u32::MAX)).unwrap_err();
     assert!(matches!(error, SimulationError::Memory { readings } if readings > 30_000_000_000), "{error}");
@@ -159,7 +159,7 @@ fn two_robots_in_one_place_are_refused() {
     assert_eq!(error.to_string(), message);
 }
 
-// A question about thousands of poles stops when it is asked to.
+// A query about thousands of poles stops when asked to.
 #[test]
 fn question_about_many_poles_stops_when_asked() {
     let pole = |k: i32| Pole::new(f64::from(k % 50) * 0.07 - 1.8, f64::from(k / 50) * 0.07 - 1.8, 0.004);
@@ -182,6 +182,6 @@ fn question_about_many_poles_stops_when_asked() {
     let (ended, stopped) = (Instant::now(), stopper.join().unwrap());
     assert_eq!(traced, Err(PathsError::Stopped));
     assert!(paths.is_empty());
-    // Unstopped it goes on for many seconds.
+    // Without the stop the query takes many seconds.
     assert!(ended - stopped < Duration::from_secs(5), "{:?} after {:?}", ended - stopped, stopped - began);
 }

@@ -63,7 +63,7 @@ fn paper<const E: usize>() -> Paper<E> {
     Paper(EchoFilter::new(Micros::new(500), 2).unwrap())
 }
 
-/// A filter that believes the median of three readings; of two equal ones it believes what the method believes.
+/// A filter that believes the median of three readings; of two equal readings it believes the one that the method does.
 #[derive(Default)]
 struct Median(std::collections::HashMap<u8, ([Option<Echo>; 3], usize)>);
 
@@ -83,7 +83,7 @@ impl Filter for Median {
     }
 }
 
-// A filter of ones own that does what a methods does gives the same readings.
+// A custom filter with the rule of a method gives the method's readings.
 #[test]
 fn own_filter_like_a_methods_gives_equal_readings() {
     let moving = Robot {
@@ -93,7 +93,7 @@ fn own_filter_like_a_methods_gives_equal_readings() {
     };
     for robot in [robot(), moving] {
         let world = alcove(vec![robot]);
-        // Of scheduled firing on time: a filter does not know what was fired, as the ring does.
+        // Firing must be on time: unlike the ring, a filter does not know the actual firing times.
         let pairs: [(Method, Method, Own); 4] = [
             (Method::Eeruf, Method::Eeruf, Own::new().filter(0, paper::<1>())),
             (Method::Conventional, Method::Comparison, Own::new().filter(0, paper::<1>())),
@@ -106,14 +106,14 @@ fn own_filter_like_a_methods_gives_equal_readings() {
             assert!(mine.len() > 200, "{}", mine.len());
             assert_eq!(columns(&mine), columns(&built_in), "{under} {like}");
         }
-        // Else nothing would be shown.
+        // The comparison must differ from believing everything, or the test would show nothing.
         let believes_all = open(&world, Method::Conventional, Own::new()).unwrap().step(2.0, |_| true).unwrap();
         let compares = open(&world, Method::Comparison, Own::new()).unwrap().step(2.0, |_| true).unwrap();
         assert_ne!(columns(&believes_all), columns(&compares));
     }
 }
 
-// A firing of ones own by a methods schedule gives the same readings.
+// A custom firing method with the schedule of a method gives the method's readings.
 #[test]
 fn own_firing_like_a_methods_gives_equal_readings() {
     let table = table_i_d_for(8, robot().period, 4).unwrap();
@@ -148,7 +148,7 @@ fn own_code_is_of_one_robot() {
     assert_eq!(error.to_string(), "robot 3; expected one of 2");
 }
 
-// An echo is distinguished from crosstalk also where a filter gives it another time.
+// An echo is distinguished from crosstalk even if a filter gives it another time.
 #[test]
 fn echo_differs_from_crosstalk_under_filter_times() {
     /// A filter that delays every echo by two microseconds.
@@ -169,7 +169,7 @@ fn echo_differs_from_crosstalk_under_filter_times() {
     }
 }
 
-// A period that cannot be fired ends the simulation with the reason.
+// An invalid period ends the simulation with the reason.
 #[test]
 fn unfireable_period_ends_the_simulation() {
     /// A firing method that is valid for three periods, and then invalid.
@@ -198,17 +198,17 @@ fn unfireable_period_ends_the_simulation() {
         assert_eq!(simulation.step(0.14, |_| true).unwrap().len(), 3);
         let error = simulation.step(1.0, |_| true).unwrap_err().to_string();
         assert_eq!(error, format!("at 0.150 s: the firing of robot 1: period 3 {why}"));
-        // It does not go on as if nothing had happened.
+        // The simulation does not continue.
         assert!(simulation.step(1.0, |_| true).is_err());
     }
-    // A sensor still listens across the end of a period.
+    // This sensor still listens across the end of a period.
     let soon = Then(period(ms(10), Phase::A, &[(ms(0), 0)]));
     let mut simulation = open(&alcove(vec![robot()]), Method::Eeruf, Own::new().firing(0, soon)).unwrap();
     let error = simulation.step(1.0, |_| true).unwrap_err().to_string();
     assert!(error.contains("period 4 fires sensor 0 at 0 us, 10000 us after"), "{error}");
 }
 
-// Errors of ones own code come out of the step and the simulation goes on.
+// Errors of custom code are returned by the step, and the simulation goes on.
 #[test]
 fn errors_of_own_code_come_out_of_the_step() {
     struct Once(bool);
@@ -239,7 +239,7 @@ fn errors_of_own_code_come_out_of_the_step() {
     assert_eq!(error.to_string(), "at 0.000 s: the firing of robot 1: out of service");
 }
 
-// A ring changes to another schedule when its period ends and refuses what it cannot fire.
+// A ring changes to another schedule at the end of its period, and refuses an invalid one.
 #[test]
 fn ring_changes_schedule_at_its_periods_end() {
     let (fast, slow) = (Micros::from_millis(60), Micros::from_millis(120));
@@ -303,7 +303,7 @@ fn obstacles_that_move_are_heard_where_they_are() {
     }
 }
 
-// A scene in which a sensor is inside something is refused and the old one stays.
+// A scene in which a sensor is inside an object is refused, and the old scene stays.
 #[test]
 fn scene_with_a_sensor_inside_is_refused() {
     let scene = |poles| {

@@ -27,7 +27,7 @@ fn panel(from: [f64; 2], to: [f64; 2]) -> Wall {
     Wall::new(from[0], from[1], to[0], to[1]).with_faces(Faces::Both)
 }
 
-/// Amplitude after this length by spreading alone.
+/// Returns the amplitude after this length by spreading alone.
 fn free(length_m: f64) -> f64 {
     10f64.powf(-Air::default().absorption_db_per_m(49_400.0) * length_m / 20.0) / length_m
 }
@@ -36,8 +36,8 @@ fn db(ratio: f64) -> f64 {
     20.0 * ratio.log10()
 }
 
-/// Kirchhoff's integral over a strip, endless in height, between two points before it: Huygens's wavelets of the strip,
-/// by the midpoint rule; over the height in closed form, by stationary phase. Relative to 1 m, without the air's loss.
+/// Computes Kirchhoff's integral over a strip of infinite height, between two points before it: Huygens's wavelets by
+/// the midpoint rule over the width, and by stationary phase over the height. Relative to 1 m, without loss in the air.
 fn kirchhoff(source: Point, receiver: Point, from: Point, to: Point) -> f64 {
     let k = Transducer::POLAROID_6500.wave_number(Air::default());
     let along = (to - from).normalize();
@@ -58,7 +58,7 @@ fn kirchhoff(source: Point, receiver: Point, from: Point, to: Point) -> f64 {
     (k / std::f64::consts::TAU).sqrt() * real.hypot(imaginary)
 }
 
-/// Strength of the only reflection, relative to an endless wall.
+/// Returns the strength of the only reflection, relative to an endless wall.
 fn share(source: Point, receiver: Point, from: [f64; 2], to: [f64; 2]) -> f64 {
     let paths = traced(&perfect(vec![panel(from, to)], vec![]), source, receiver, NARROW, 1);
     let (_, length_m, amplitude) = paths.iter().find(|path| path.0.len() == 1).expect("a reflection");
@@ -67,7 +67,7 @@ fn share(source: Point, receiver: Point, from: [f64; 2], to: [f64; 2]) -> f64 {
 
 #[test]
 fn straight_ahead_a_panel_returns_what_the_table_says() {
-    // docs/explanation/physics.md, in dB: the widths in millimetres.
+    // The figures are those of docs/explanation/physics.md, in dB; the widths are in millimetres.
     let widths = [1.0, 10.0, 20.0, 50.0, 83.0, 100.0];
     for (r, expected) in [(1.0, [-35.4, -15.4, -9.4, -1.6, 2.0, 2.6]), (3.0, [-40.2, -20.2, -14.1, -6.2, -1.9, -0.4])] {
         for (width, expected) in widths.iter().zip(expected) {
@@ -78,7 +78,7 @@ fn straight_ahead_a_panel_returns_what_the_table_says() {
     }
 }
 
-// A panel returns kirchhoffs integral at any distance and angle.
+// A panel returns Kirchhoff's integral at any distance and angle.
 #[test]
 fn panel_returns_kirchhoffs_integral() {
     let (mut worst, mut count) = (0.0f64, 0);
@@ -102,7 +102,7 @@ fn panel_returns_kirchhoffs_integral() {
     assert!(worst < 0.025 && count == 360, "{worst}");
 }
 
-// A wide panel returns all and half of one half and a narrow one its width.
+// A wide panel returns everything, half of it half, and a narrow panel in proportion to its width.
 #[test]
 fn panel_returns_by_its_width() {
     let here = Point::new(0.0, 1.0);
@@ -119,17 +119,17 @@ fn panel_returns_by_its_width() {
 
 #[test]
 fn a_wall_that_sound_grazes_is_as_narrow_as_it_looks() {
-    // At 80 degrees a wall of 40 cm is 7 cm wide: one of 7 cm seen straight ahead at the same distances.
+    // At 80 degrees a wall of 40 cm is 7 cm wide. It reflects like a wall of 7 cm straight ahead at the same distances.
     let (sin, cos) = 80f64.to_radians().sin_cos();
     let grazed = share(Point::new(-2.0 * sin, 2.0 * cos), Point::new(2.0 * sin, 2.0 * cos), [-0.2, 0.0], [0.2, 0.0]);
     let ahead = share(Point::new(0.0, 2.0), Point::new(0.0, 2.0), [-0.2 * cos, 0.0], [0.2 * cos, 0.0]);
     assert!(db(grazed / ahead).abs() < 0.2 && ahead < 0.9, "{grazed} {ahead}");
 }
 
-// Every bounce counts by its distances along the path and a pole is an end.
+// Every bounce counts by its distances along the path, and a pole is an end.
 #[test]
 fn every_bounce_counts_along_the_path() {
-    // To a wall, back to a panel behind, and to the wall again: the panel is 2 m from either end of the path.
+    // The path leads to a wall, back to a panel behind, and to the wall again: the panel is 2 m from either end.
     let wall = || panel([-9.0, 1.0], [9.0, 1.0]);
     let behind = || panel([-0.02, -0.5], [0.02, -0.5]);
     let (here, there) = (Point::new(-0.2, 0.0), Point::new(0.2, 0.0));
@@ -139,9 +139,9 @@ fn every_bounce_counts_along_the_path() {
     let half_m = 0.5 * over.1;
     let cos = 2.5 / half_m;
     let straight = share(Point::new(0.0, half_m), Point::new(0.0, half_m), [-0.02 * cos, 0.0], [0.02 * cos, 0.0]);
-    // The wall is as good as endless.
+    // The wall is practically endless.
     assert!((over.2 / free(over.1) / straight - 1.0).abs() < 0.01, "{} {straight}", over.2 / free(over.1));
-    // On to a pole, the panel is as near to an end as the pole is.
+    // If the path continues to a pole, the panel's distance to that end is its distance to the pole.
     let pole = Pole { material: Material::PERFECT, ..Pole::new(0.0, 0.5, 0.004) };
     let by_way = |behind: Wall, physics| {
         let paths = traced(&perfect(vec![behind], vec![pole]), Point::origin(), Point::origin(), physics, 2);
@@ -154,7 +154,7 @@ fn every_bounce_counts_along_the_path() {
 
 #[test]
 fn two_panels_make_a_path_no_louder_than_one_does() {
-    // Each of the width that is loudest 1 m and 3 m from the path's ends.
+    // Both panels have the loudest width for a bounce 1 m and 3 m from the path's ends.
     let zone = (2.0 * Air::default().speed_of_sound() / 49_400.0 * 0.75).sqrt();
     let half = 0.5 * 1.209 * zone;
     let facing = perfect(vec![panel([-half, 1.0], [half, 1.0]), panel([-half, -1.0], [half, -1.0])], vec![]);
@@ -168,7 +168,7 @@ fn two_panels_make_a_path_no_louder_than_one_does() {
 fn a_wall_cut_in_pieces_sounds_as_before() {
     let (source, receiver) = (Point::new(-0.3, 1.0), Point::new(0.1, 0.7));
     let whole = |physics| traced(&perfect(vec![panel([-0.2, 0.0], [0.15, 0.0])], vec![]), source, receiver, physics, 2);
-    // One piece goes the other way, and one has a panel on its back.
+    // One piece is reversed, and one has a panel on its back.
     let cut = vec![
         panel([-0.2, 0.0], [-0.1, 0.0]),
         panel([0.0, 0.0], [-0.1, 0.0]),
@@ -179,7 +179,7 @@ fn a_wall_cut_in_pieces_sounds_as_before() {
     for physics in [NARROW, WITH_EDGES] {
         let amplitudes = |paths: Vec<Row>| paths.iter().map(|path| (path.1, path.2)).collect::<Vec<_>>();
         let (whole, cut) = (amplitudes(whole(physics)), amplitudes(cut(physics)));
-        // The panel behind has an end of its own, out of sight.
+        // The panel behind has its own end, which is hidden.
         assert_eq!(whole.len(), cut.len(), "{physics}");
         for (whole, cut) in whole.iter().zip(cut) {
             assert!((whole.0 - cut.0).abs() < 1e-12 && (whole.1 / cut.1 - 1.0).abs() < 1e-9, "{whole:?} {cut:?}");
@@ -192,7 +192,7 @@ fn a_wall_cut_in_pieces_sounds_as_before() {
 fn rectangular_room_does_not_change_with_panels() {
     let corners = [[0.0, 0.0], [4.0, 0.0], [4.0, 3.0], [0.0, 3.0], [0.0, 0.0]];
     let room = Scene::new(Wall::polyline(&corners).collect(), vec![], Air::default()).unwrap();
-    // Straight into a corner, too: the images are the exact answer there.
+    // The same holds straight into a corner, where the images are the exact answer.
     for at in [Point::new(0.3, 0.2), Point::new(0.5, 0.5), Point::new(2.0, 1.0)] {
         assert_eq!(traced(&room, at, at, WITH_EDGES, 4), traced(&room, at, at, Physics::PLAIN, 4));
     }
@@ -232,7 +232,7 @@ fn paths_over_panels_are_the_same_backwards() {
     assert!(compared > 5000, "{compared}");
 }
 
-/// A random room with panels, 5 mm to 25 cm wide, and poles.
+/// Draws a random room with poles, and with panels 5 mm to 25 cm wide.
 fn furnished(random: &mut Random) -> (Scene, Point, Point) {
     loop {
         let bare = scene(random, 8);
@@ -250,8 +250,8 @@ fn furnished(random: &mut Random) -> (Scene, Point, Point) {
     }
 }
 
-/// Checks that no audible path over panels is lost: panels may be louder than walls, so a bound for walls must not
-/// serve for panels.
+/// Checks that no audible path over panels is lost: panels may be louder than walls, so a bound for walls does not hold
+/// for panels.
 #[test]
 fn nothing_that_is_heard_over_panels_is_lost() {
     let (mut heard, mut louder, mut around) = (0, 0, 0);
@@ -310,13 +310,13 @@ fn the_ends_of_a_panel_are_heard_once() {
     assert_eq!(traced(&ahead, here, here, physics, 1).len(), 3, "the reflection and two ends");
     let found = traced(&ahead, here, here, WITH_EDGES, 1);
     assert!(found.len() == 1 && found[0].0 == [Bounce::Wall(0)], "{found:?}");
-    // An end that a burst tells apart is an echo of its own.
+    // An end that is more than a burst away is an echo of its own.
     let wide = perfect(vec![panel([1.0, -0.02], [1.0, 3.0])], vec![]);
     let found = traced(&wide, here, here, WITH_EDGES, 1);
     assert!(found.len() == 2 && found[1].1 > 6.0 && matches!(found[1].0[..], [Bounce::Edge(_)]), "{found:?}");
 }
 
-// Beside its reflection a panel returns kirchhoffs integral in one.
+// Beside its reflection a panel returns Kirchhoff's integral as one echo.
 #[test]
 fn panel_beside_its_reflection_returns_kirchhoffs_integral() {
     let here = Point::origin();
@@ -334,8 +334,8 @@ fn panel_beside_its_reflection_returns_kirchhoffs_integral() {
         }
     }
     assert!(worst < 0.7, "{worst}");
-    // A square post of 7 mm seen along its diagonal returns both of its sides, here alike; at 45 degrees Kirchhoff's
-    // cosines take 2.3 dB more than the geometric theory of diffraction does.
+    // A square post of 7 mm seen along its diagonal returns echoes of both sides, which are equal here. At 45 degrees
+    // Kirchhoff's cosines take 2.3 dB more than the geometric theory of diffraction does.
     let side = 0.00523;
     let post = [[1.0 - side, 0.0], [1.0, side], [1.0 + side, 0.0], [1.0, -side], [1.0 - side, 0.0]];
     let found = traced(&perfect(Wall::polyline(&post).collect(), vec![]), here, here, WITH_EDGES, 1);
@@ -359,7 +359,7 @@ fn default_has_it_and_under_plain_nothing_of_it_is_there() {
 #[test]
 fn a_panel_is_heard_from_farther_than_a_wall() {
     let reads = |physics: Physics| {
-        // A wall is heard up to 3 m; the panel is of the loudest width.
+        // A wall is audible up to 3 m; the panel has the loudest width.
         let transducer = Transducer { max_range_m: 3.0, ..Transducer::POLAROID_6500 };
         let scene = perfect(vec![panel([3.05, -0.088], [3.05, 0.088])], vec![]);
         let robot = Robot::with_sensors(Pose::identity(), vec![Pose::identity()], transducer);

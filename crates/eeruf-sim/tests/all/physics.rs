@@ -6,7 +6,7 @@ use eeruf_sim::*;
 
 const C: f64 = 343.2;
 
-/// A robot with a single sensor that looks ahead.
+/// Makes a robot with a single sensor that looks ahead.
 fn single(x: f64, y: f64, heading: f64) -> Robot {
     let pose = Pose::new(Vector::new(x, y), heading);
     Robot::with_sensors(pose, vec![Pose::identity()], Transducer::POLAROID_6500)
@@ -20,7 +20,7 @@ fn run(world: &World) -> Readings {
     simulate(world, Method::Conventional, &Options::periods(20)).unwrap()
 }
 
-/// Number of readings of the first robot that came from the second.
+/// Returns the number of readings of the first robot that came from the second.
 fn heard_of_the_second(other: Transducer) -> usize {
     let facing = Robot { transducer: other, ..single(2.0, 0.0, PI) };
     let readings = run(&open_air(vec![single(0.0, 0.0, 0.0), facing]).unwrap());
@@ -33,7 +33,7 @@ fn unlike_transducers_hear_each_other_if_their_bands_overlap() {
     let same = Transducer::POLAROID_6500;
     let expected = heard_of_the_second(same);
     assert!(expected > 15, "{expected}");
-    // However the other one listens, and however wide it sends.
+    // The other transducer may listen and send in any way.
     for other in [
         Transducer { gain: GainProfile::Linear, ..same },
         Transducer { max_range_m: 5.0, ..same },
@@ -47,7 +47,7 @@ fn unlike_transducers_hear_each_other_if_their_bands_overlap() {
     assert_eq!(heard_of_the_second(Transducer::HC_SR04), 0);
 }
 
-// A path between two kinds has the senders pattern at its start and the listeners at its end.
+// A path between two kinds of transducers has the sender's pattern at its start and the listener's at its end.
 #[test]
 fn path_has_senders_and_listeners_patterns() {
     let scene = Scene::new(vec![], vec![], Air::default()).unwrap();
@@ -65,20 +65,20 @@ fn path_has_senders_and_listeners_patterns() {
     assert!((matrix.paths()[0].amplitude / (patterns * air) - 1.0).abs() < 1e-12);
 }
 
-/// Reading of the first robot's sensor alone, as the distance in metres.
+/// Returns the reading of the first robot's sensor alone, as a distance in metres.
 fn sees(world: &World) -> f64 {
     let readings = run(world);
     let first = (0..readings.len()).find(|&k| readings.robot[k] == 0).unwrap();
     readings.reference_us[first] * 1e-6 * C / 2.0
 }
 
-/// A sensor before a wall under `plain`, where the echo's time gives the distance.
+/// Makes a world of a sensor before a wall under `plain`, where the echo's time gives the distance.
 fn before_a_wall(robots: Vec<Robot>) -> Result<World, WorldError> {
     let wall = Wall::new(4.0, -5.0, 4.0, 5.0).with_faces(Faces::Both);
     World::new(Scene::new(vec![wall], vec![], Air::default())?, robots, Noise::NONE)?.with_physics(Physics::PLAIN)
 }
 
-// A robot with a body reflects and shades for others and not for itself.
+// A robot with a body reflects and shades sound of others, but not its own.
 #[test]
 fn body_reflects_and_shades_for_others_alone() {
     let triangle = Outline::new(&[[-0.3, -0.4], [0.5, 0.0], [-0.3, 0.4]]).unwrap();
@@ -88,7 +88,7 @@ fn body_reflects_and_shades_for_others_alone() {
     assert!((with(Some(Body::Disc(0.3))) - 1.7).abs() < 1e-3);
     assert!((with(Some(Body::Box(0.6, 1.0))) - 1.7).abs() < 1e-3);
     assert!((with(Some(Body::Polygon(triangle))) - 1.7).abs() < 1e-3, "its flat back");
-    // It shades the wall, and a slanting side sends the echo elsewhere.
+    // The body shades the wall, and its slanting side sends the echo elsewhere.
     let turned = Robot { body: Some(Body::Box(1.0, 1.0)), ..single(2.0, 0.0, 0.5) };
     assert!(sees(&before_a_wall(vec![watcher, turned]).unwrap()).is_nan());
 }
@@ -105,7 +105,7 @@ fn a_body_shades_one_robot_from_another() {
     assert_eq!(crosstalk(Some(Body::Box(0.3, 0.3))), 0);
 }
 
-// A body moves with its robot and ends the run where it touches.
+// A body moves with its robot, and a contact ends the run.
 #[test]
 fn moving_body_ends_the_run_where_it_touches() {
     let coming = |velocity: f64, body| Robot {
@@ -154,7 +154,7 @@ fn bodies_and_sensors_that_are_inside_something_are_refused() {
     assert!(refused(open_air(vec![disc(-1.0, 0.0)])).contains("body"));
 }
 
-/// A world in which a robot moves, alone or beside another that it cannot hear but whose paths are found in between.
+/// Simulates a moving robot, alone or beside another that it cannot hear but whose paths are searched for in between.
 fn moving(physics: Physics, beside: bool) -> Readings {
     let room = Wall::polyline(&[[-3.0, -2.0], [3.0, -2.0], [3.0, 2.0], [-3.0, 2.0], [-3.0, -2.0]]).collect();
     let motion = Motion::Constant { velocity: Vector::new(0.1, 0.02), turn_rad_s: 0.2 };
@@ -187,7 +187,7 @@ fn a_robot_that_stands_sees_an_echo_fade_slowly() {
         let scene = Scene::new(vec![wall], vec![], Air::default()).unwrap();
         let physics = Physics { fading_time_s, ..Physics::DEFAULT };
         let world = World::new(scene, vec![single(0.0, 0.0, 0.0)], noise).and_then(|world| world.with_physics(physics));
-        // What fades is heard later, so that the fading can be read off the times.
+        // Faint echoes are heard later, so that the fading can be read from the times.
         let readings = simulate(&world.unwrap(), Method::Conventional, &Options::periods(400)).unwrap();
         let (times, mut step, mut spread) = (&readings.earliest_us, 0.0, 0.0);
         let mean = times.iter().sum::<f64>() / times.len() as f64;
@@ -197,7 +197,7 @@ fn a_robot_that_stands_sees_an_echo_fade_slowly() {
         }
         step / spread
     };
-    // The mean square of a step over twice the variance is one minus the correlation from reading to reading, 60 ms on.
+    // The mean square of a step over twice the variance is one minus the correlation between readings 60 ms apart.
     let (slow, fast) = (steps(1.0), steps(1e-3));
     assert!(slow < 0.05, "{slow}");
     assert!((fast - 1.0).abs() < 0.2, "{fast}");

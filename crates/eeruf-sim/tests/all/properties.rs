@@ -4,7 +4,7 @@ use crate::random::{free_point, scene};
 use eeruf_sim::{Air, Bounce, Faces, Paths, Point, Pole, Pose, Random, Scene, Vector, Wall};
 use proptest::prelude::*;
 
-/// Paths of one receiver as sortable rows.
+/// Returns the paths of one receiver as sortable rows.
 fn rows(paths: &Paths) -> Vec<(Vec<Bounce>, f64)> {
     let mut rows: Vec<_> = (0..paths.len()).map(|k| (paths.bounces(k).to_vec(), paths.length_m[k])).collect();
     rows.sort_by(|a, b| a.0.cmp(&b.0));
@@ -15,7 +15,7 @@ fn same(a: &[(Vec<Bounce>, f64)], b: &[(Vec<Bounce>, f64)], scale: f64) -> bool 
     a.len() == b.len() && a.iter().zip(b).all(|(a, b)| a.0 == b.0 && (a.1 * scale - b.1).abs() < 1e-9 * scale.max(1.0))
 }
 
-/// A random scene with two poles, a source and a receiver.
+/// Draws a random scene with two poles, a source and a receiver.
 fn setting(seed: u64) -> (Scene, Point, Point) {
     let mut random = Random::from_state(seed);
     let bare = scene(&mut random, 8);
@@ -50,7 +50,7 @@ proptest! {
         }
         turned.sort_by(|a, b| a.0.cmp(&b.0));
         prop_assert!(same(&rows(&there), &turned, 1.0));
-        // Amplitudes too, and arrival there is departure here.
+        // Amplitudes are equal too, and departures and arrivals are exchanged.
         let sum = |paths: &Paths| paths.amplitude.iter().sum::<f64>();
         prop_assert!((sum(&there) - sum(&back)).abs() <= 1e-9 * sum(&back));
         let cosines = |angles: &[f64]| angles.iter().map(|a| a.cos()).sum::<f64>();
@@ -150,13 +150,13 @@ proptest! {
         let wall = |a: Point, b: Point| Wall::new(a.x, a.y, b.x, b.y);
         let on = |far: f64| pose * Point::new(far * aim.cos(), far * aim.sin());
         let (source, receiver) = (on(s), on(r));
-        // From inside: the wall along x first keeps the free space on its left.
+        // Seen from inside, the wall along x first keeps the free space on its left.
         let walls = vec![wall(corner[1], corner[0]), wall(corner[2], corner[1])];
         let inside = Scene::new(walls, vec![], Air::default()).unwrap();
         let paths = inside.paths(source, &[receiver], 3, FAR).unwrap();
         let twice = paths.order.iter().filter(|order| **order == 2).count();
         prop_assert_eq!((paths.len(), twice), (4, 1));
-        // From outside the same apex is a reflex corner and returns nothing.
+        // Seen from outside, the same apex is a reflex corner and returns nothing.
         let far = |p: Point| p + (corner[1] - p) * 2.0;
         let walls = vec![wall(corner[0], corner[1]), wall(corner[1], corner[2])];
         let outside = Scene::new(walls, vec![], Air::default()).unwrap();
@@ -230,7 +230,7 @@ fn every_path_obeys_the_law_of_reflection_at_each_bounce() {
                         normal
                     }
                 };
-                // The mirrored way in is the way out.
+                // The direction in, mirrored, is the direction out.
                 let (way_in, way_out) = ((around[1] - around[0]).normalize(), (around[2] - around[1]).normalize());
                 let mirrored = way_in - normal * (2.0 * way_in.dot(&normal));
                 assert!((mirrored - way_out).norm() < 1e-6, "{bounce:?}: {way_in} to {way_out}");

@@ -2,11 +2,11 @@
 
 use eeruf_sim::{Air, Faces, Point, Random, Scene, Wall};
 
-/// Draws of tests besides numbers in a range.
+/// Draws for tests besides numbers in a range.
 pub(crate) trait Draw {
-    /// A whole number below `count`.
+    /// Draws a whole number below `count`.
     fn below(&mut self, count: u64) -> u64;
-    /// A point in a square around the origin.
+    /// Draws a point in a square around the origin.
     fn point(&mut self, half: f64) -> Point;
 }
 
@@ -20,7 +20,7 @@ impl Draw for Random {
     }
 }
 
-/// A star-shaped room around the origin with `walls` walls.
+/// Makes a star-shaped room around the origin with `walls` walls.
 pub(crate) fn star(random: &mut Random, walls: usize) -> Vec<Wall> {
     let tau = std::f64::consts::TAU;
     let corners: Vec<_> = (0..walls)
@@ -33,7 +33,7 @@ pub(crate) fn star(random: &mut Random, walls: usize) -> Vec<Wall> {
     (0..walls).map(|k| (corners[k], corners[(k + 1) % walls])).map(|(a, b)| Wall::new(a[0], a[1], b[0], b[1])).collect()
 }
 
-/// A random scene: a star, sometimes with an opening, panels or a pillar; never one that [`Scene::new`] refuses.
+/// Draws a random scene that [`Scene::new`] accepts: a star, sometimes with an opening, panels or a pillar.
 pub(crate) fn scene(random: &mut Random, most_walls: usize) -> Scene {
     loop {
         let count = 3 + random.below(most_walls as u64 - 2) as usize;
@@ -61,7 +61,7 @@ pub(crate) fn scene(random: &mut Random, most_walls: usize) -> Scene {
     }
 }
 
-/// A point that is not inside anything solid.
+/// Draws a point that is not inside a solid.
 pub(crate) fn free_point(random: &mut Random, scene: &Scene) -> Point {
     loop {
         let at = random.point(3.0);

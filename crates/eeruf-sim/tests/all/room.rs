@@ -1,4 +1,4 @@
-//! Rooms with floor and ceiling: every image of boxes in closed form, reciprocity, and the loss from pointing up or
+//! Rooms with floor and ceiling: all images of boxes in closed form, reciprocity, and the loss from pointing up or
 //! down.
 
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -7,7 +7,7 @@ use eeruf_sim::*;
 
 use crate::random::{free_point, scene as random_scene};
 
-/// A box of this size with its corner at the origin and perfect surfaces.
+/// Makes a box of this size with its corner at the origin and perfect surfaces.
 fn box_room(size: [f64; 3]) -> Scene {
     let [x, y, ceiling_m] = size;
     let corners = [[0.0, 0.0], [x, 0.0], [x, y], [0.0, y], [0.0, 0.0]];
@@ -16,7 +16,7 @@ fn box_room(size: [f64; 3]) -> Scene {
     Scene::new(walls, vec![], Air::default()).and_then(|scene| scene.with_room(Some(room))).unwrap()
 }
 
-/// The lengths of all images of a box up to an order, at most four of the bounces at floor and ceiling (Allen and
+/// Returns the lengths of all images of a box up to an order, with at most four bounces at floor and ceiling (Allen and
 /// Berkley 1979): along each axis the image at `2 n l + s`, after `|2 n|` bounces, and at `2 n l - s`, after
 /// `|2 n - 1|`.
 fn images(size: [f64; 3], source: [f64; 3], receiver: [f64; 3], max_order: u32) -> Vec<(u32, f64)> {
@@ -46,7 +46,7 @@ fn paths_of_boxes_are_the_closed_form_images() {
     let mut random = Random::new(3);
     let (mut tracer, mut paths, mut count, mut worst): (_, _, usize, f64) = (Tracer::new(), Paths::default(), 0, 0.0);
     for number in 0..200 {
-        // Rooms and corridors.
+        // Even numbers are rooms, odd numbers corridors.
         let size =
             if number % 2 == 0 { [[2.0, 8.0], [2.0, 8.0], [2.2, 4.0]] } else { [[1.2, 2.4], [6.0, 20.0], [2.2, 3.0]] };
         let size = size.map(|[low, high]| random.between(low, high));
@@ -60,7 +60,7 @@ fn paths_of_boxes_are_the_closed_form_images() {
         assert_eq!(paths.len(), expected.len(), "{size:?} {source:?} {receiver:?}");
         for (k, &(_, length_m)) in expected.iter().enumerate() {
             worst = worst.max((paths.length_m[k] - length_m).abs());
-            // Perfect surfaces leave spreading and air.
+            // With perfect surfaces only spreading and air reduce the amplitude.
             let air = 10f64.powf(-Air::default().absorption_db_per_m(49_400.0) * length_m / 20.0);
             assert!((paths.amplitude[k] / (air / length_m) - 1.0).abs() < 1e-9);
             let vertical = paths.bounces(k).iter().filter(|bounce| bounce.is_vertical()).count() as u32;
@@ -135,7 +135,7 @@ fn floor_and_ceiling_take_what_their_materials_say() {
     }
     assert!((paths.length_m[1] - 8f64.sqrt()).abs() < 1e-12);
     assert!((paths.elevations_rad(1)[0] + PI / 4.0).abs() < 1e-12, "down to the floor");
-    // A sensor's own echo of the floor right below it.
+    // A sensor hears its own echo from the floor right below it.
     tracer.trace_at(&scene, here, &[here], heights, Limits::order(1), &mut paths).unwrap();
     assert_eq!(paths.length_m, [2.0, 4.0]);
     assert_eq!((paths.bounces(0), paths.bounces(1)), (&[Bounce::Floor][..], &[Bounce::Ceiling][..]));
@@ -155,7 +155,7 @@ fn patterns_take_the_angle_in_space() {
     let floor = matrix.between(0, 1).iter().find(|path| matrix.bounces(path) == [Bounce::Floor]).unwrap();
     let length_m = (1.0f64 + 0.04 + 0.64).sqrt();
     let piston = module.piston(scene.air());
-    // Directions as vectors: to the receiver's image below the floor, and from it to the source's.
+    // The directions are vectors: to the receiver's image below the floor, and from it to the source's image.
     let sent = piston.pattern((1.0 / length_m).acos());
     let (sin, cos) = (PI - 0.1).sin_cos();
     let heard = piston.pattern(((-cos - 0.2 * sin) / length_m).acos());
@@ -165,7 +165,7 @@ fn patterns_take_the_angle_in_space() {
     assert!(floor.elevations_rad.iter().all(|&up| up < 0.0 && up > -FRAC_PI_2));
 }
 
-/// Checks that the search which omits faint paths finds everything that is heard, with a pole and panels too.
+/// Checks that the search that omits faint paths finds every audible path, with a pole and panels too.
 #[test]
 fn nothing_that_is_heard_in_a_room_is_kept_back() {
     let mut random = Random::new(12);

@@ -39,8 +39,8 @@ fn alternation_removes_errors_and_several_echoes_lose_little() {
     assert!(wrong(Method::Conventional) > 0.3, "{}", wrong(Method::Conventional));
     assert!(wrong(Method::Comparison) > 0.15, "{}", wrong(Method::Comparison));
     assert!(wrong(Method::Eeruf) < 0.03, "{}", wrong(Method::Eeruf));
-    // Several echoes cost hardly a good reading (0.2 % here, against 22) and err by what lies behind a first echo that
-    // fades: 13.6 % here, of which foreign sound caused 3.3; with sequential firing, 6.1.
+    // Several echoes cost hardly a good reading (0.2 % here, against 22), but a first echo that fades lets a farther
+    // object be read: 13.6 % are wrong here, 3.3 by foreign sound; with sequential firing 6.1 are wrong.
     let crosstalk = of(&table, Method::MultiEcho).crosstalk_of_all.unwrap().median;
     assert!(wrong(Method::MultiEcho) > wrong(Method::Sequential), "{}", wrong(Method::Sequential));
     assert!(crosstalk < wrong(Method::MultiEcho) / 2.0, "{crosstalk} {}", wrong(Method::MultiEcho));
@@ -48,10 +48,10 @@ fn alternation_removes_errors_and_several_echoes_lose_little() {
     assert!(lost(Method::MultiEcho) < lost(Method::Eeruf) / 4.0, "{} {}", lost(Method::MultiEcho), lost(Method::Eeruf));
 }
 
-// Flow leaves no sensor blind and loses few good readings without more errors.
+// Flow leaves no sensor blind, and loses few good readings without more errors.
 #[test]
 fn flow_leaves_no_sensor_blind() {
-    // What a sensor hears of itself is wrong more often where echoes fade slowly, by any method.
+    // If echoes fade slowly, a sensor's own sound is wrong more often under any method.
     for (physics, most_wrong) in [(Physics::PLAIN, 0.03), (Physics::DEFAULT, 0.07)] {
         let table = run_under(physics, 40, READINGS, &[Method::Eeruf, Method::Flow]);
         let (eeruf, flow) = (of(&table, Method::Eeruf), of(&table, Method::Flow));
@@ -64,13 +64,13 @@ fn flow_leaves_no_sensor_blind() {
         assert!(wrong.median < most_wrong && wrong.p90 < wrong_eeruf.p90, "{physics} {wrong:?} {wrong_eeruf:?}");
         let age = flow.age_p99_ms.unwrap().median;
         assert!(age < 1000.0, "{physics} {age}");
-        // A nearer wall is seen within a few readings; eeruf sees as many never.
+        // Flow sees a nearer wall within a few readings; eeruf never sees many of them.
         let (nearer, never) = (flow.nearer.unwrap(), eeruf.nearer.unwrap().never);
         assert!(nearer.median <= Some(4) && nearer.never < 0.02 && never > 0.1, "{physics} {nearer:?} {never}");
     }
 }
 
-// The best schedule guarantees what the table does in a period a fifth shorter.
+// The best schedule gives the table's guarantees in a period a fifth shorter.
 #[test]
 fn best_schedule_is_a_fifth_shorter_at_equal_guarantees() {
     let robot = Alcove::random(0).robot();

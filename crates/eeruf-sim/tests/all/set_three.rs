@@ -31,7 +31,7 @@ fn json_names_ways_and_groups() {
         let share = |name: &str| figures[name]["mean"].as_f64().unwrap();
         let shares: f64 = ["belief_right", "unknown", "phantom", "too_far", "faint"].map(share).iter().sum();
         assert!((shares - 1.0).abs() < 1e-9, "{way}: {shares}");
-        // Others are foreign.
+        // Sound of other robots is a part of foreign sound.
         assert!(share("others_of_accepted") <= share("foreign_of_accepted"), "{way}");
         assert!(share("others_of_accepted") > 0.0 && share("others_at_worst") >= share("others_of_accepted"), "{way}");
     }
@@ -69,7 +69,7 @@ fn nothing_to_do_is_refused() {
 const TODAY: [Method; 6] =
     [Method::InTurn, Method::Arrays, Method::Groups, Method::SyncLine, Method::FreeRunning, Method::Table];
 
-/// A firing of a placing's robots: when in ns, the robot, the sensor, and the earliest edge and its cause.
+/// A firing of a placing's robots: time in ns, robot, sensor, and the earliest edge and its cause.
 type Fired = (u64, u16, u8, u64, Cause);
 
 fn fired(number: u64, entry: &Entry) -> Vec<Fired> {
@@ -83,8 +83,8 @@ fn fired(number: u64, entry: &Entry) -> Vec<Fired> {
     all
 }
 
-// A ping timer as long as the window is one by one, groups by it are those far apart, and a sync line that rests for a
-// period fires all at once every period.
+// A ping timer as long as the window fires one by one, groups with it are the far groups, and a sync line that rests
+// for a period fires all at once every period.
 #[test]
 fn todays_ways_so_set_are_the_methods_they_resemble() {
     let by = |method: Method, turn: u32, rest: u32| {
@@ -105,7 +105,7 @@ fn todays_ways_so_set_are_the_methods_they_resemble() {
     }
 }
 
-// Two arrays of six in a corridor would be through before the first module has rested.
+// Two arrays of six in a corridor would finish before the first module has rested.
 #[test]
 fn todays_ways_let_every_module_rest() {
     let soonest = |entry: &Entry| -> u64 {
@@ -116,7 +116,7 @@ fn todays_ways_let_every_module_rest() {
         steps.min().unwrap()
     };
     for method in TODAY {
-        // Drifts of up to 5000 ppm in free running modules, and of 50 ppm in all robots.
+        // Drifts are up to 5000 ppm in free-running modules, and 50 ppm in all robots.
         assert!(soonest(&method.into()) >= 64_600_000, "{method}: {}", soonest(&method.into()));
     }
     assert!(soonest(&Entry::from(Method::Arrays).with_sketch(Sketch::default())) < 60_000_000);
@@ -129,7 +129,7 @@ fn todays_ways_take_others_sound_more_often_than_flow() {
     let others: Vec<_> = found.methods.iter().map(|(_, figures)| figures.others_of_accepted.unwrap().mean).collect();
     let (flow, today) = others.split_last().unwrap();
     assert!(today.iter().all(|others| *others > 0.15 && *others > 2.0 * flow), "{others:?}");
-    // Firing at once as often as the modules allow, a sensor hears its neighbours more than it hears other robots.
+    // When firing at once as often as the modules allow, a sensor hears its neighbours more than other robots.
     let (_, sync_line) = &found.methods[3];
     let foreign = sync_line.foreign_of_accepted.unwrap().mean;
     assert!(foreign > 1.5 * sync_line.others_of_accepted.unwrap().mean, "{sync_line:?}");

@@ -21,7 +21,7 @@ fn of(found: &SetTwo, method: Method) -> Figures {
     found.methods.iter().find(|(of, _)| of == method.as_str()).unwrap().1
 }
 
-// Eeruf finishes 95 of 100 courses at 0 8 m s or more alone and 90 beside a second robot.
+// EERUF finishes 95 of 100 courses at 0.8 m/s or more alone, and 90 beside a second robot.
 #[test]
 fn eeruf_finishes_95_of_100_courses() {
     for physics in [Physics::PLAIN, Physics::DEFAULT] {
@@ -33,7 +33,7 @@ fn eeruf_finishes_95_of_100_courses() {
     }
 }
 
-// With bodies the second robot is an obstacle and courses are finished all the same.
+// With bodies the second robot is an obstacle, and courses are still finished.
 #[test]
 fn second_robots_body_is_an_obstacle() {
     let run = |bodies, second_robot| {
@@ -45,10 +45,10 @@ fn second_robots_body_is_an_obstacle() {
         assert!(with.bodies && !without.bodies);
         let eeruf = of(&with, Method::Eeruf);
         assert!(eeruf.finished > 10, "{eeruf:?}");
-        // The ring on the platform's edge hears other echoes than the one on its middle.
+        // The ring on the platform's edge hears other echoes than a ring on its middle.
         assert!(with.runs.iter().flatten().zip(without.runs.iter().flatten()).all(|(a, b)| a.track != b.track));
     }
-    // One that stands in the way is run into, or driven round: nobody drives through it.
+    // The first robot runs into a robot in its way or drives round it, but never through it.
     let in_the_way = Point::new(2.0, 3.5);
     for run in run(true, Some(in_the_way)).runs.iter().flatten() {
         for place in &run.track {
@@ -60,7 +60,7 @@ fn second_robots_body_is_an_obstacle() {
 
 #[test]
 fn in_the_labs_rectangle_the_width_of_walls_changes_nothing() {
-    // docs/explanation/physics.md says so.
+    // The claim is in docs/explanation/physics.md.
     let without = Physics { narrow_panels: false, ..Physics::DEFAULT };
     for (second_robot, bodies) in [(None, false), (Some(SECOND_BEHIND), false), (Some(SECOND_AHEAD), true)] {
         let run = |physics| {
@@ -71,7 +71,7 @@ fn in_the_labs_rectangle_the_width_of_walls_changes_nothing() {
     }
 }
 
-// With a pilot of its own conventional firing finishes more than half of the courses.
+// With its own pilot, conventional firing finishes more than half of the courses.
 #[test]
 fn own_pilot_brings_conventional_through_half_the_courses() {
     for second_robot in [None, Some(SECOND_BEHIND), Some(SECOND_AHEAD)] {
@@ -81,7 +81,7 @@ fn own_pilot_brings_conventional_through_half_the_courses() {
     }
 }
 
-// With the pilot that eeruf was to share constant lags fill the grid with phantoms.
+// With the pilot shared with EERUF, constant lags fill the grid with phantoms.
 #[test]
 fn shared_pilot_fills_the_grid_with_phantoms() {
     for second_robot in [None, Some(SECOND_BEHIND)] {
@@ -96,7 +96,7 @@ fn shared_pilot_fills_the_grid_with_phantoms() {
     }
 }
 
-// Each pilot and the noise of odometry make another drive of the same course.
+// Each pilot, and the noise of odometry, changes the drive on a course.
 #[test]
 fn pilot_and_noise_change_the_drive() {
     let track = |pilots, odometry_noise| {
@@ -125,7 +125,7 @@ fn every_course_tells_where_the_robot_drove_and_how_it_ended() {
                 Ending::Contact => assert!(last.x_m < 9.7, "{method}"),
                 Ending::TimeOut => assert!(run.time_s >= 39.9, "{method}"),
             }
-            // It drives no faster than it can, and along its heading.
+            // The platform drives no faster than its limit, and along its heading.
             for pair in run.track.windows(2) {
                 let (dx, dy) = (pair[1].x_m - pair[0].x_m, pair[1].y_m - pair[0].y_m);
                 assert!(dx.hypot(dy) <= 1.0 * (pair[1].time_s - pair[0].time_s) + 1e-9);

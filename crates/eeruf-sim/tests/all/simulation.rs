@@ -8,18 +8,18 @@ use eeruf_sim::*;
 
 const C: f64 = 343.2;
 
-/// A world under `plain`, whose times have closed forms: an echo is heard when it begins.
+/// Makes a world under `plain`, whose times have closed forms: an echo is heard when it begins.
 fn world(walls: Vec<Wall>, robots: Vec<Robot>, noise: Noise) -> World {
     let world = World::new(Scene::new(walls, vec![], Air::default()).unwrap(), robots, noise);
     world.and_then(|world| world.with_physics(Physics::PLAIN)).unwrap()
 }
 
-/// A wall across the y axis that reflects downwards.
+/// Makes a wall across the y axis that reflects downwards.
 fn wall_at(y: f64) -> Wall {
     Wall::new(9.0, y, -9.0, y).with_material(Material::PERFECT)
 }
 
-/// A robot at the origin with a single sensor that looks along the y axis.
+/// Makes a robot at the origin with a single sensor that looks along the y axis.
 fn single() -> Robot {
     Robot::with_sensors(Pose::rotation(FRAC_PI_2), vec![Pose::identity()], Transducer::POLAROID_6500)
 }
@@ -28,7 +28,7 @@ fn run(world: &World, method: Method, periods: u32) -> Readings {
     simulate(world, method, &Options::periods(periods)).unwrap()
 }
 
-/// The median over random geometries of Set I of a share, in per cent.
+/// Returns the median over random geometries of Set I of a share, in per cent.
 fn set_one(physics: Physics, method: Method, value: fn(&Summary) -> f64) -> f64 {
     let alcoves: Vec<u64> = (0..80).collect();
     let mut shares = sweep(&alcoves, |&number| {
@@ -48,12 +48,12 @@ fn set_one_eeruf_removes_crosstalk_comparison_does_not() {
     let rejected = of(Method::Eeruf, |summary| summary.rejected);
     assert!(conventional > 25.0 && conventional < 50.0, "{conventional}");
     assert!(comparison > 15.0 && comparison < conventional, "{comparison}");
-    // Most of what is left are a sensor's own echoes that are only just heard.
+    // Most of the rest are a sensor's own echoes that are barely audible.
     assert!(eeruf < 3.0 && crosstalk < 1.0, "{eeruf} {crosstalk}");
     assert!(rejected > 25.0 && rejected < 75.0, "{rejected}");
 }
 
-// With slow fading edges and range walk too alternation is what removes crosstalk.
+// With slow fading, edges and range walk too, it is alternation that removes crosstalk.
 #[test]
 fn alternation_removes_crosstalk_under_full_physics() {
     let crosstalk = |method| set_one(Physics::DEFAULT, method, |summary| summary.crosstalk_of_all);
@@ -83,18 +83,18 @@ fn a_sensor_that_fires_alone_in_quiet_air_is_never_wrong() {
         let alcove = Alcove::random(number);
         let world = World::new(alcove.scene().unwrap(), vec![alcove.robot()], Noise::NONE).unwrap();
         let summary = run(&world, Method::Sequential, 100).summary();
-        // One by one, the room is not always silent again when the next one fires.
+        // With one by one, the room is not always silent when the next sensor fires.
         assert!(summary.wrong_of_all <= 0.1, "{number}: {summary:?}");
         let one = Robot { sensors: vec![alcove.robot().sensors[3]], ..alcove.robot() };
         let alone = World::new(alcove.scene().unwrap(), vec![one], Noise::NONE).unwrap();
         for method in [Method::Conventional, Method::Sequential, Method::Median] {
-            // Sound of 62 ms, the farthest that is heard, could outlast a period of 60 ms.
+            // The farthest audible sound takes 62 ms and could outlast a period of 60 ms.
             assert_eq!(run(&alone, method, 100).summary().wrong_of_all, 0.0, "{number} {method}");
         }
     }
 }
 
-/// Two sensors 0.4 m apart face a wall 2 m away; the second fires 15 ms after the first.
+/// Makes two sensors 0.4 m apart that face a wall 2 m away; the second fires 15 ms after the first.
 fn two_before_a_wall() -> World {
     let sensors = vec![Pose::new(Vector::new(0.0, 0.2), 0.0), Pose::new(Vector::new(0.0, -0.2), 0.0)];
     let robot = Robot::with_sensors(Pose::rotation(FRAC_PI_2), sensors, Transducer::POLAROID_6500);
@@ -110,7 +110,7 @@ fn every_reading_knows_to_the_microsecond_what_caused_it() {
     let crossed_us = (0.4f64.hypot(6.0) / C * 1e6).floor();
     for reading in 0..readings.len() {
         let first = readings.sensor[reading] == 0;
-        // The second sensor hears the first one's sound 15 ms earlier by its own reckoning.
+        // The second sensor counts the first one's sound from its own firing, 15 ms later.
         let (t_echo, cause, emitter, order) =
             if first { (own_us, Cause::Own, 0, 1) } else { (crossed_us - 15_000.0, Cause::Crosstalk, 0, 1) };
         assert_eq!(readings.kind[reading], ReadingKind::Accepted);
@@ -157,13 +157,13 @@ fn good_readings_of_a_moving_robot_differ_by_2_v_dt_over_c() {
         for pair in 1..readings.len() {
             let dt = readings.fired_s[pair] - readings.fired_s[pair - 1];
             let change = readings.t_echo_us[pair] - readings.t_echo_us[pair - 1];
-            // To first order in v / c, and the clock counts whole microseconds.
+            // The formula holds to first order in v / c, and the clock counts whole microseconds.
             let expected = -2e6 * v * dt / C;
             assert!((change - expected).abs() < 2.0, "{method}: {change} {expected}");
         }
         assert_eq!(readings.summary().wrong_of_all, 0.0);
     }
-    // At that speed over such a period nothing passes, unless odometry says what to expect.
+    // At that speed over such a period no reading passes, unless odometry gives the expected change.
     robot.motion = Motion::Constant { velocity: Vector::new(0.0, 1.0), turn_rad_s: 0.0 };
     for (odometry, accepted) in [(false, 0), (true, 38)] {
         let robot = Robot { odometry, ..robot.clone() };
@@ -190,7 +190,7 @@ fn a_fast_clock_reads_longer_times_and_fires_sooner() {
     robot.clock = Clock { offset_us: u32::MAX - 100_000, drift_ppm: 500.0 };
     let world = world(vec![wall_at(3.0)], vec![robot], Noise::NONE);
     let readings = run(&world, Method::Conventional, 1000);
-    // 60 s hold 1000 periods by a true clock.
+    // A true clock counts 1000 periods in 60 s.
     assert_eq!(readings.len(), 1001);
     let expected = (6.0 / C * 1e6 * 1.0005_f64).floor();
     assert!(readings.t_echo_us.iter().all(|&us| (us - expected).abs() <= 1.0));
@@ -206,8 +206,8 @@ fn crosstalk_between_robots_wanders_with_their_clocks() {
     let readings = run(&world, Method::Conventional, 300);
     let robots = &readings.robot;
     let of = |robot| (0..readings.len()).filter(move |&reading| robots[reading] == robot);
-    // The first robot fires 3 ms before the second, which therefore hears it 3 ms early, and then ever less so: its
-    // clock gains 18 us in a period.
+    // The first robot fires 3 ms before the second, which therefore hears it 3 ms early at first, and later less so:
+    // its clock gains 18 us in a period.
     let fooled: Vec<_> = of(1).filter(|&reading| readings.cause[reading] == Cause::Crosstalk).collect();
     assert!((160..=170).contains(&fooled.len()), "{}", fooled.len());
     let change = readings.t_echo_us[fooled[100]] - readings.t_echo_us[fooled[0]];
@@ -221,13 +221,13 @@ fn bursts_from_outside_are_heard_and_the_filter_refuses_them() {
     let world = world(vec![wall_at(5.0)], vec![single()], noise);
     let conventional = run(&world, Method::Conventional, 1000);
     let bursts = conventional.cause.iter().filter(|&&cause| cause == Cause::External).count();
-    // One comes between blanking and the echo at 29 ms with a probability of 10/s times 26.8 ms, about 23 %.
+    // A burst comes between blanking and the echo at 29 ms with a probability of 10/s times 26.8 ms, about 23 %.
     assert!((190..290).contains(&bursts), "{bursts}");
     let eeruf = run(&world, Method::Eeruf, 1000).summary();
     assert!(conventional.summary().wrong_of_all > 0.15 && eeruf.wrong_of_all < 0.01);
 }
 
-// The same seed gives the same readings on any number of threads.
+// An equal seed gives equal readings on any number of threads.
 #[test]
 fn equal_seeds_give_equal_readings_on_any_threads() {
     let jobs: Vec<(u64, Method)> = (0..4).flat_map(|number| Method::ALL.map(|method| (number, method))).collect();

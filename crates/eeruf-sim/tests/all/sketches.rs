@@ -1,4 +1,4 @@
-//! Rings fired like sketches and modules: the order of firings, and which readings are believed.
+//! Rings fired like sketches and modules: the order of firings, and the readings that are believed.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use eeruf_core::{Micros, ReadingKind};
 use eeruf_sim::experiments::set_one::Alcove;
 use eeruf_sim::*;
 
-/// Four sensors in a row that all face a wall 1.715 m ahead: an echo of 10 ms at 343 m/s.
+/// Four sensors in a row that all face a wall 1.715 m ahead, which gives an echo of 10 ms at 343 m/s.
 const ROW: &str = "
 [noise]
 fading_db_rms = 0.0
@@ -28,7 +28,7 @@ fn run(firing: &str, method: Method) -> Readings {
     simulate(&read(&format!("{ROW}{firing}")).unwrap(), method, &Options::periods(20)).unwrap()
 }
 
-/// The firings in order: microsecond and sensor.
+/// Returns the firings in order: microsecond and sensor.
 fn firings(readings: &Readings) -> Vec<(u64, u8)> {
     let mut firings: Vec<_> =
         (0..readings.len()).map(|k| ((1e6 * readings.fired_s[k]).round() as u64, readings.sensor[k])).collect();
@@ -36,7 +36,7 @@ fn firings(readings: &Readings) -> Vec<(u64, u8)> {
     firings
 }
 
-/// The times between consecutive firings of some sensors.
+/// Returns the times between consecutive firings of some sensors.
 fn steps(readings: &Readings, of: &[u8]) -> Vec<u64> {
     let own: Vec<_> = firings(readings).into_iter().filter(|(_, sensor)| of.contains(sensor)).collect();
     own.windows(2).map(|pair| pair[1].0 - pair[0].0).collect()
@@ -61,7 +61,7 @@ fn echo_or_timeout_fires_the_next_in_turn() {
     assert!(steps(&readings, &[0, 1, 2, 3]).iter().all(|&step| step == 8_000));
     let silent = |kind: &ReadingKind| *kind == ReadingKind::Clear;
     assert!(readings.cause.iter().all(|&cause| cause == Cause::Nothing) && readings.kind.iter().all(silent));
-    // A ping timer fires on time, whatever came.
+    // A ping timer fires on time, with or without an echo.
     let readings = run("firing = { turn_us = 33_000 }", Method::InTurn);
     assert!(steps(&readings, &[0, 1, 2, 3]).iter().all(|&step| step == 33_000));
 }
@@ -77,7 +77,7 @@ fn arrays_take_turns_side_by_side() {
     for array in [&[0, 2, 3][..], &[1]] {
         assert!(steps(&readings, array).iter().all(|&step| step == 12_000), "{array:?}");
     }
-    // Two halves unless the sketch says otherwise.
+    // The arrays are two halves unless the sketch sets others.
     let halves = run("", Method::Arrays);
     assert_eq!(firings(&halves)[..2], [(0, 0), (0, 2)]);
 }
@@ -87,7 +87,7 @@ fn groups_fire_together_and_wait_for_each_other() {
     let readings = run("firing = { groups = [[0, 3], [1], [2]], turn_us = 15_000 }", Method::Groups);
     let expected = [(0, 0), (0, 3), (15_000, 1), (30_000, 2), (45_000, 0), (45_000, 3)];
     assert_eq!(firings(&readings)[..6], expected);
-    // Neighbours apart unless the sketch says otherwise.
+    // The groups keep neighbours apart unless the sketch sets others.
     let apart = run("neighbours = 2", Method::Groups);
     assert_eq!(firings(&apart)[..2], [(0, 0), (0, 2)]);
 }
@@ -130,7 +130,7 @@ fn a_table_of_three_phases_fires_as_it_says() {
     let readings = run(&firing, Method::Table);
     let first: Vec<_> = firings(&readings).into_iter().filter(|(_, sensor)| *sensor == 1).map(|(at, _)| at).collect();
     assert_eq!(first[..4], [10_000, 61_000, 100_000, 160_000]);
-    // Without one it is the robot's own schedule, which as a method of ours would judge.
+    // Without a table it is the robot's own schedule, which as one of our methods would judge readings.
     let own = "schedule = { period_us = 60_000, t_fire_a_us = [0, 5_000, 9_000, 14_000], \
                t_fire_b_us = [2_000, 8_000, 11_000, 20_000] }";
     let own = run(own, Method::Table);
@@ -140,7 +140,7 @@ fn a_table_of_three_phases_fires_as_it_says() {
 
 #[test]
 fn a_sketch_believes_each_reading_or_two_that_agree() {
-    // At once in an alcove, sensors hear each other's sound before their own: all is believed.
+    // In an alcove, sensors that fire at once hear each other's sound before their own, and all of it is believed.
     let alcove = Alcove::random(1);
     let believed = |consecutive: u8| {
         let robot = Robot { firing: Sketch { consecutive, ..Sketch::default() }, ..alcove.robot() };
@@ -149,7 +149,7 @@ fn a_sketch_believes_each_reading_or_two_that_agree() {
     };
     let (each, two) = (believed(1), believed(2));
     assert!(each.kind.iter().all(|kind| matches!(kind, ReadingKind::Accepted | ReadingKind::Clear)));
-    // Two that agree are believed too, since crosstalk of one trigger repeats: no rule asks what explains them.
+    // Two readings that agree are believed too, since crosstalk of one trigger repeats and no explanations are checked.
     let first = two.kind.iter().filter(|kind| matches!(kind, ReadingKind::First | ReadingKind::NoEcho)).count();
     assert_eq!(first, 8);
     let wrong = [each, two].map(|readings| readings.summary().wrong_of_all);
@@ -162,7 +162,7 @@ fn sequential_waits_for_as_long_as_its_modules_hear() {
         let readings = simulate(&read(text).unwrap(), Method::Sequential, &Options::periods(30)).unwrap();
         steps(&readings, &[0])[0]
     };
-    // 5.69 m in 33.2 ms, less than the window of 36 ms.
+    // The distance is 5.69 m, which takes 33.2 ms, less than the window of 36 ms.
     assert_eq!(cycle(ROW), 4 * 36_001);
     assert_eq!(cycle(&ROW.replace("hc-sr04", "polaroid-6500")), 4 * (73_252 + 1));
     assert_eq!(cycle(&ROW.replace("module = \"hc-sr04\"", "")), 4 * 36_001);
@@ -177,7 +177,7 @@ fn a_scene_says_how_its_robots_fire() {
     let two = format!("firing.turn_us = 20_000\n{ROW}firing = {{ groups = [[0, 1], [2, 3]], consecutive = 3 }}");
     let world = read(&two).unwrap();
     assert_eq!(world.robots()[0].firing.consecutive, 3);
-    // What the robot says stands for itself.
+    // The robot's own settings override the common ones.
     assert_eq!(world.robots()[0].firing.turn, Micros::ZERO);
     let world = read(&format!("firing.turn_us = 20_000\n{ROW}")).unwrap();
     assert_eq!(world.robots()[0].firing, Sketch { turn: Micros::from_millis(20), ..Sketch::default() });

@@ -27,7 +27,7 @@ fn world(text: &str) -> Result<World, String> {
     World::from_text(Path::new("w.toml"), text).map_err(|error| error.to_string())
 }
 
-// Each sensor of an uneven robot hears as far as its own window and is accepted there.
+// Each sensor of an uneven robot hears as far as its own window, and its readings are accepted there.
 #[test]
 fn uneven_sensors_hear_as_far_as_their_windows() {
     let robot = world(WORLD).unwrap();
@@ -38,13 +38,13 @@ fn uneven_sensors_hear_as_far_as_their_windows() {
         let sensor = usize::from(sensor);
         all[sensor] += 1;
         accepted[sensor] += u32::from(readings.kind[at] == ReadingKind::Accepted);
-        // NaN without an echo.
+        // A missing echo is NaN.
         longest[sensor] = longest[sensor].max(readings.t_echo_us[at]);
     }
     for (sensor, window) in [18_000.0, 18_000.0, 2_500.0, 3_000.0].into_iter().enumerate() {
         assert!(all[sensor] > 700 && longest[sensor] <= window, "sensor {sensor}: {all:?} {longest:?}");
     }
-    // The walls stand 0.9 m and more from the middle: only those that look far see them.
+    // The walls are 0.9 m and more from the middle: only sensors with a long window see them.
     assert!(accepted[0] > 300 && accepted[1] > 300 && accepted[2] == 0, "{accepted:?}");
     assert!(longest[0] > 3_000.0 && longest[1] > 3_000.0, "{longest:?}");
     // Other methods listen for the longest window with every sensor.
@@ -70,7 +70,7 @@ fn what_is_wrong_with_an_uneven_robot_is_said_in_one_line() {
     assert!(none.ends_with("expected more than t_delta_us and the blanking time"), "{none}");
     let alone = with("[[2, 3]]", "[[2, 4]]");
     assert!(alone.ends_with("[2, 4]; expected two or more different sensors from 0 to 3"), "{alone}");
-    // Apart, the two that fire together would be taken for each other.
+    // If they fire apart, the two sensors that fire together would be taken for each other.
     let unverified = world(&WORLD.replace("together = [[2, 3]]", "")).unwrap();
     let error = simulate(&unverified, Method::Eeruf, &Options::periods(4)).unwrap_err().to_string();
     assert!(error.contains("crosstalk between sensors 3 and 4 moves by 0 us"), "{error}");

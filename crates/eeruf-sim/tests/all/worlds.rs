@@ -1,4 +1,4 @@
-//! World files: all shipped ones work, and invalid ones cause one clear line.
+//! World files: all shipped files work, and invalid files cause one clear line.
 
 use std::path::Path;
 
@@ -13,7 +13,7 @@ fn error(text: &str) -> String {
     World::from_text(Path::new("w.toml"), text).unwrap_err().to_string()
 }
 
-/// The error for a robot with additional lines after `WALL`: its own lines are 3 to 5, the additional ones begin at 6.
+/// Returns the error for a robot with more lines after `WALL`: the robot has lines 3 to 5, the others begin at 6.
 fn robot_error(more: &str) -> String {
     error(&format!("{WALL}{ROBOT}{more}"))
 }
@@ -28,7 +28,7 @@ fn the_worlds_that_are_shipped_can_be_simulated() {
     }
 }
 
-// A bad world gets one line that names file line field value and what is expected.
+// A bad world gets one line that names file, line, field, value and expected value.
 #[test]
 fn bad_world_gets_one_line_with_its_place() {
     assert_eq!(error(WALL), "w.toml: 0 robots; expected 1 to 64");
@@ -127,7 +127,7 @@ fn an_unknown_method_is_answered_with_the_list_of_all() {
     }
 }
 
-// A world written to a file and read again gives the same bit for bit.
+// A world written to a file and read again is equal, bit for bit.
 #[test]
 fn world_file_round_trips_bit_for_bit() {
     let walls = [[-2.0, -2.0], [2.0, -2.0], [2.0, 2.0], [-2.0, 2.0], [-2.0, -2.0]];
@@ -189,7 +189,7 @@ fn world_file_round_trips_bit_for_bit() {
     }
 }
 
-// Headings that no angle has move by a last bit when they are written and then no more.
+// Headings that no angle has change by a last bit when they are first written, and not again.
 #[test]
 fn headings_move_by_a_last_bit_once() {
     let mut moved = 0;

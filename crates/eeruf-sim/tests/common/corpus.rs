@@ -1,4 +1,4 @@
-//! Reads the shared corpus of critical paths: for the tests, the bench and the timing example alike.
+//! Reader of the shared corpus of critical paths, for the tests, the bench and the timing example.
 #![allow(dead_code, unreachable_pub, reason = "each of them uses its own part")]
 
 use eeruf_sim::{Air, Faces, Point, Pole, Scene, Wall};

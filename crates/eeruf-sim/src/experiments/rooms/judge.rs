@@ -502,7 +502,7 @@ mod tests {
         let [low, high] = times_95(&runs(&[2.0, 10.0]), &base[..2], &[2]).unwrap();
         assert!((low - 2.0).abs() < 1e-9 && (high - 2.0).abs() < 1e-9, "{low} to {high}");
         let [low, high] = times_95(&runs(&[2.0, 10.0, 2.0, 8.0]), &base, &[2, 2]).unwrap();
-        // The second kind's rooms stand 0.6 from their mean: so is its standard error, and that of both is half of it.
+        // The second kind's rooms lie 0.6 from their mean. So is its standard error; for both kinds it is half of that.
         assert!((high / low - libm::exp(2.0 * 1.96 * 0.3)).abs() < 1e-9, "{low} to {high}");
         assert!(((high * low).sqrt() - 5.0_f64.sqrt()).abs() < 1e-9, "{low} to {high}");
         assert_eq!(times_95(&runs(&[2.0]), &base[..1], &[1]), None);

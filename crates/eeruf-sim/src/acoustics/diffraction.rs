@@ -1,10 +1,10 @@
-//! Waves at small and sharp objects: poles as rigid cylinders, and outward edges of two walls. Both correct or complete
-//! geometric optics; neither changes the course of a path.
+//! Waves at small and sharp objects: poles as rigid cylinders, and outward edges of two walls. They correct or complete
+//! geometric optics; the course of a path remains the same.
 
 use core::f64::consts::{PI, TAU};
 
-/// Far scattered pressure of a rigid cylinder, `|p_s / p_i| sqrt(r / a)`, at wave number times radius `ka` and
-/// scattering angle `phi_rad`; pi is back towards the source.
+/// Far scattered pressure of a rigid cylinder, `|p_s / p_i| sqrt(r / a)`, for `ka`, the wave number times the radius,
+/// and the scattering angle `phi_rad`; pi is back towards the source.
 ///
 /// ```text
 /// sqrt(2 / (pi k a)) | sum e_n J_n'(ka) / H_n'(ka) cos(n phi) |,    e_0 = 1, e_n = 2
@@ -15,7 +15,7 @@ use core::f64::consts::{PI, TAU};
 /// assert!((form - 0.6715548430307726).abs() < 1e-6);
 /// ```
 pub fn rigid_cylinder_form(ka: f64, phi_rad: f64) -> f64 {
-    // Terms die out quickly once the order is above ka.
+    // Terms decay quickly once the order is above ka.
     let last = (ka + 12.0 * libm::cbrt(ka) + 12.0).min(100_000.0) as i32;
     let (mut real, mut imaginary) = (0.0, 0.0);
     for n in 0..=last {
@@ -49,10 +49,10 @@ pub fn pole_wave_correction(ka: f64, incidence_rad: f64) -> f64 {
 
 /// Keller's diffraction coefficient of a rigid edge, in the square root of a metre.
 ///
-/// `wave_number` in rad/m; `outside_rad` is the open angle around the edge (3 pi / 2 at a right-angle corner seen from
-/// outside); the two directions are measured from one of the walls. At distances `s'` and `s` the amplitude relative to
-/// 1 m is this over `sqrt(s' s (s' + s))`. It grows without bound where a wall's own reflection or shadow begins, where
-/// geometric optics fails too.
+/// `wave_number` is in rad/m. `outside_rad` is the open angle around the edge (3 pi / 2 at a right-angle corner seen
+/// from outside). The two directions are measured from one of the walls. At distances `s'` and `s` the amplitude
+/// relative to 1 m is the coefficient over `sqrt(s' s (s' + s))`. It grows without bound where a wall's own reflection
+/// or shadow begins, where geometric optics fails too.
 pub fn edge_diffraction(wave_number: f64, outside_rad: f64, from_rad: f64, to_rad: f64) -> f64 {
     let n = outside_rad / PI;
     let turn = libm::cos(PI / n);

@@ -1,4 +1,4 @@
-//! Reflection of a wall that is narrow compared with the first Fresnel zone: Fresnel's integral over its width.
+//! Reflection of a wall that is narrow compared with the first Fresnel zone, by Fresnel's integral over its width.
 
 use core::f64::consts::FRAC_1_SQRT_2;
 
@@ -7,9 +7,9 @@ use eeruf_modules::fresnel;
 /// Largest reflection of a part of a wall relative to the whole wall's, `sqrt(2) |F(1.209)|`, 2.6 dB; rounded up.
 pub(crate) const LOUDEST_PANEL: f64 = 1.342_17;
 
-/// Share of an endless wall's reflection that a part between two edges returns. Each edge is given by the detour over
-/// it, in wavelengths; infinite if the wall does not end there. `beside` is true if the point of reflection does not
-/// lie between them.
+/// Returns the share of an endless wall's reflection that a part between two edges returns. Each edge is given by the
+/// detour over it, in wavelengths; infinite if the wall does not end there. `beside` is true if the point of reflection
+/// does not lie between the edges.
 ///
 /// ```text
 /// |F(v2) -+ F(v1)| / sqrt(2),    v = 2 sqrt(detour / lambda),    F = C + i S
@@ -26,7 +26,7 @@ pub(crate) fn panel_share(detours: [f64; 2], beside: bool) -> f64 {
 mod tests {
     use super::*;
 
-    // A whole wall returns all half of one half and a narrow one as much as it is wide.
+    // A whole wall returns everything, half of it half, and a narrow one in proportion to its width.
     #[test]
     fn panel_returns_a_share_of_a_whole_wall() {
         assert!((panel_share([f64::INFINITY; 2], false) - 1.0).abs() < 1e-15);
@@ -39,7 +39,7 @@ mod tests {
         }
     }
 
-    // The loudest panel is loudest and beside the reflection there is at most half as much.
+    // No panel exceeds `LOUDEST_PANEL`; beside the point of reflection a panel returns at most half as much.
     #[test]
     fn loudest_panel_is_loudest() {
         let (mut most, mut beside): (f64, f64) = (0.0, 0.0);

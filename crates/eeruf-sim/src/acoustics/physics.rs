@@ -1,11 +1,11 @@
-//! Effects of a world: the presets `plain` and `default`, and the single effects.
+//! Effects of a world: the presets `plain` and `default`, and the individual effects.
 
 use core::fmt;
 use core::str::FromStr;
 
 use serde::ser::{Serialize, SerializeStruct as _, Serializer};
 
-/// Effects that are computed. `docs/explanation/physics.md` explains each, and the source of its default.
+/// Effects that a world computes. `docs/explanation/physics.md` explains each, and the source of its default.
 ///
 /// ```
 /// use eeruf_sim::Physics;
@@ -15,24 +15,24 @@ use serde::ser::{Serialize, SerializeStruct as _, Serializer};
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Physics {
-    /// True if a pole shades what lies behind it when sound cannot bend around it: when its radius exceeds that of the
+    /// True if a pole shades the space behind it when sound cannot bend around it: when its radius exceeds that of the
     /// first Fresnel zone, `sqrt(lambda d1 d2 / (d1 + d2))`. Sensors inside a pole or a wall are then refused too.
     /// Robots' bodies always shade.
     pub shadows: bool,
-    /// True if the free ends of walls and the corners that jut out diffract, once and in plain sight.
+    /// True if the free ends of walls and the corners that jut out diffract sound, once per path and only if visible.
     pub edges: bool,
-    /// True if a wall that is narrow against the first Fresnel zone, `sqrt(lambda r)` wide at distance r, reflects
-    /// according to its width instead of like an endless wall.
+    /// True if a wall that is narrow compared with the first Fresnel zone, `sqrt(lambda r)` wide at distance r,
+    /// reflects according to its width instead of like an endless wall.
     pub narrow_panels: bool,
     /// True if a threshold detector hears faint echoes later. An echo just at the threshold is heard a whole burst
     /// late.
     pub range_walk: bool,
     /// True if sounds of one firing that reach a receiver within a burst of each other add as phasors, by the phases of
-    /// the carrier, and the envelope of the sum crosses the threshold; `range_walk` is then part of it. Otherwise each
-    /// is heard on its own. No preset has it.
+    /// the carrier, and are heard when the envelope of the sum crosses the threshold; this includes `range_walk`. If
+    /// false, each sound is heard on its own. False in all presets.
     pub interference: bool,
-    /// Time for which a path fades in the same way, in seconds: the time after which the correlation has fallen to 1/e.
-    /// At 0 each firing fades independently, by its number among the firings of its sensor.
+    /// Time for which a path fades in the same way, in seconds: after it, the correlation has fallen to 1/e. At 0 each
+    /// firing fades independently, by its number among the firings of its sensor.
     pub fading_time_s: f64,
 }
 
@@ -49,7 +49,7 @@ impl Physics {
         fading_time_s: 0.0,
     };
 
-    /// The default of worlds: everything on except `interference`, with the numbers explained in
+    /// The default of worlds: all effects except `interference`, with the numbers explained in
     /// `docs/explanation/physics.md`.
     pub const DEFAULT: Self = Self {
         shadows: true,
@@ -73,7 +73,7 @@ impl Physics {
         self.fading_time_s > 0.0
     }
 
-    /// Returns true if an echo is heard when its envelope has risen to the threshold.
+    /// Returns true if an echo is heard only when its envelope has risen to the threshold.
     pub(crate) fn rises(&self) -> bool {
         self.range_walk || self.interference
     }

@@ -4,16 +4,16 @@
 //! A = D(departure) D(arrival) * product of R_i * 10^(-alpha L / 20) / L
 //! ```
 //!
-//! The patterns `D` belong to transducers and are applied in [`CrosstalkMatrix`](crate::CrosstalkMatrix); a pole
-//! replaces `1 / L` by the spreading that its curvature causes.
+//! The patterns `D` belong to transducers and are applied in [`CrosstalkMatrix`](crate::CrosstalkMatrix). At a pole the
+//! spreading by its curvature replaces `1 / L`.
 
 use crate::geometry::Vector;
 use crate::scene::{Bounce, Material, Scene};
 
-/// The product of all surfaces' reflections, roughness included.
+/// Returns the product of all surfaces' reflections, roughness included.
 ///
-/// Walls are followed from the receiver back to a pole (or the source), then from the source on to the pole, because a
-/// surface's roughness counts by its own angle of incidence.
+/// Walls are followed from the receiver back to a pole (or the source), then from the source to the pole, because a
+/// surface's roughness depends on its own angle of incidence.
 pub(crate) fn reflected(
     scene: &Scene,
     bounces: &[Bounce],

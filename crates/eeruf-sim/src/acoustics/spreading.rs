@@ -1,10 +1,10 @@
-//! Fall of the amplitude along a path over poles, by geometric optics.
+//! Decrease of the amplitude along a path over poles, by geometric optics.
 
 use crate::geometry::Specular;
 
-/// Spreading along a path over poles, by geometric optics.
+/// Returns the spreading along a path over poles, by geometric optics.
 ///
-/// With `s'` the way to a pole of radius `a`, `i` the angle of incidence and `s` the way on,
+/// With `s'` the distance to a pole of radius `a`, `i` the angle of incidence and `s` the distance after it,
 ///
 /// ```text
 /// 1 / rho = 1 / R + 2 / (a cos i),    A^2 = 1 / (s' L) * product of rho / (rho + s)
@@ -38,7 +38,7 @@ mod tests {
     use super::*;
     use crate::geometry::{Point, alhazen};
 
-    // An eight millimetre pole is 24 decibel below a wall at one metre.
+    // A pole of 8 mm is 24 dB below a wall at 1 m.
     #[test]
     fn pole_of_8_mm_is_24_db_below_a_wall_at_1_m() {
         let here = Point::origin();

@@ -5,23 +5,23 @@ use eeruf_modules::{Beam, Gain as GainProfile, Module, Piston};
 
 use crate::scene::Air;
 
-/// Number of steps by which [`GainProfile::Stepped`] grows.
+/// Number of steps of [`GainProfile::Stepped`].
 const GAIN_STEPS: f64 = 12.0;
 
-/// The clock of the TL851 in Hz, a ceramic resonator, and its cycles between steps of the gain: 1,000, then 1,152 for
-/// each step, and 2,304 for each of the last three.
+/// The clock of the TL851 in Hz, a ceramic resonator, and its cycles until each step of the gain: 1,000, then 1,152
+/// more for each step, and 2,304 more for each of the last three.
 const TL851_HZ: f64 = 420e3;
 const TL851_STEPS: [u32; 11] = [1000, 2152, 3304, 4456, 5608, 6760, 7912, 9064, 11_368, 13_672, 15_976];
 /// Height of a step of [`GainProfile::Polaroid6500`], in dB.
 const STEP_DB: f64 = 1.15;
 
-/// The gain of a receiver at a time after firing, relative to the gain at `full_s`, from which on it stays 1. The
-/// Polaroid's own steps are at 1 after 38 ms, whatever `full_s` is.
+/// Returns the gain of a receiver at a time after firing, relative to the gain from `full_s` on. The Polaroid's own
+/// steps reach 1 after 38 ms, whatever `full_s` is.
 ///
-/// [`GainProfile::Polaroid6500`] has the twelve steps of the Polaroid 6500 module, by the clock of its control circuit,
-/// the TL851 (Texas Instruments, SLSS004, March 1988): whatever range it is used for, a step ends 2.38, 5.12, 7.87, ..
-/// 38.04 ms after firing. Each step adds 1.15 dB. That is a choice: the TL852's relative gain is published as a drawing
-/// only (SLSS003, Fig. 2), and regions of constant depth leave 1.1 to 1.2 dB a step; see `docs/explanation/physics.md`.
+/// [`GainProfile::Polaroid6500`] has the twelve steps of the Polaroid 6500 module. Its control circuit, the TL851
+/// (Texas Instruments, SLSS004, March 1988), ends a step 2.38, 5.12, 7.87, .. 38.04 ms after firing, for any range.
+/// Each step adds 1.15 dB, a choice: the TL852's relative gain is published only as a drawing (SLSS003, Fig. 2), and
+/// regions of constant depth suggest 1.1 to 1.2 dB a step; see `docs/explanation/physics.md`.
 ///
 /// ```
 /// use eeruf_sim::{GainProfile, gain_at};
@@ -71,12 +71,12 @@ pub struct Transducer {
 }
 
 impl Transducer {
-    /// Polaroid 600 series electrostatic transducer with the 6500 module. Its gain is constant, which the module's is
-    /// not; [`GainProfile::Polaroid6500`] is nearer to it.
+    /// Polaroid 600 series electrostatic transducer with the 6500 module. The gain here is constant, unlike the
+    /// module's; [`GainProfile::Polaroid6500`] is closer to it.
     pub const POLAROID_6500: Self = Self::of(&eeruf_modules::POLAROID_6500);
 
-    /// HC-SR04 module. Its gain is constant, as the module's is: amplifiers of fixed gain before a comparator; see
-    /// `docs/explanation/physics.md`.
+    /// HC-SR04 module. Its gain is constant, as in the module, which has amplifiers of fixed gain before a comparator;
+    /// see `docs/explanation/physics.md`.
     pub const HC_SR04: Self = Self::of(&eeruf_modules::HC_SR04);
 
     /// The acoustics of a module.
@@ -94,7 +94,7 @@ impl Transducer {
         }
     }
 
-    /// The module that is `like` another one except for its acoustics, in whole numbers.
+    /// Describes the transducer as a module, in whole numbers; all but the acoustics is taken from `like`.
     pub(crate) fn described(&self, like: &Module) -> Module {
         let whole = |value: f64| value.round() as u32;
         Module {
@@ -110,7 +110,7 @@ impl Transducer {
         }
     }
 
-    /// `k = 2 pi f / c` in rad/m.
+    /// Returns `k = 2 pi f / c` in rad/m.
     pub fn wave_number(&self, air: Air) -> f64 {
         core::f64::consts::TAU * self.frequency_hz / air.speed_of_sound()
     }
@@ -120,7 +120,7 @@ impl Transducer {
         Piston { floor: self.pattern_floor, beam: self.beam, ..Piston::new(self.wave_number(air), self.radius_m) }
     }
 
-    /// Returns true if it hears the sound of another kind, which it does if their bands overlap. Hearing is mutual.
+    /// Returns true if the transducer hears another kind, which it does if their bands overlap. Hearing is mutual.
     ///
     /// ```
     /// use eeruf_sim::Transducer;
@@ -137,7 +137,7 @@ impl Transducer {
         f64::from(self.cycles) / self.frequency_hz
     }
 
-    /// The least amplitude that is heard: a perfect wall at the farthest range, on axis.
+    /// Returns the least amplitude that is heard: a perfect wall at the farthest range, on axis.
     ///
     /// ```
     /// use eeruf_sim::{Air, Transducer};
@@ -149,13 +149,13 @@ impl Transducer {
         libm::exp10(-air.absorption_db_per_m(self.frequency_hz) * length_m / 20.0) / length_m
     }
 
-    /// Received level after the time-varying gain, on the scale of [`detection_floor`](Self::detection_floor).
+    /// Returns the level after the time-varying gain, on the scale of [`detection_floor`](Self::detection_floor).
     pub fn received(&self, amplitude: f64, length_m: f64, air: Air) -> f64 {
         let c = air.speed_of_sound();
         amplitude * gain_at(self.gain, length_m / c, 2.0 * self.max_range_m / c)
     }
 
-    /// Level above the [`detection_floor`](Self::detection_floor), in decibels; below 0 nothing is heard.
+    /// Returns the level above the [`detection_floor`](Self::detection_floor) in dB; below 0 nothing is heard.
     ///
     /// ```
     /// use eeruf_sim::{Air, Transducer};

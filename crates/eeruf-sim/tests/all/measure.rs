@@ -1,4 +1,4 @@
-//! The measure of what a robot needs, checked by controls whose rank is known in every room.
+//! The measure of a robot's needs, checked by controls whose rank is known in every room.
 
 use std::f64::consts::TAU;
 
@@ -50,14 +50,14 @@ fn controls_rank_as_they_must_in_every_condition() {
         assert!(sound.things >= 5, "{name}: {sound:?}");
         assert_eq!((never.never, never.false_stops), (1.0, 0), "{name}");
         let half_ms = |cell: &Cell| cell.t50_t90_ms[0];
-        // A robot that drives by a thing is 0.3 m away from it sooner or later.
+        // A robot that drives past a thing is 0.3 m away from it sooner or later.
         assert!(half_ms(&always) > 2.0 * half_ms(&sound), "{name}: {always:?}");
         assert!(always.false_stops_per_min.value > 30.0, "{name}: {always:?}");
-        // Most of what appears does so while an older belief is held.
+        // Most things appear while an older belief is held.
         assert!(half_ms(&holds) > 3.0 * half_ms(&sound), "{name}: {holds:?}");
         assert!(holds.t95_ms.value >= sound.t95_ms.value, "{name}");
         assert_eq!(genie.false_stops, 0, "{name}");
-        // It is told the paths, but does not choose when to fire: foreign sound hides one thing of seven now and then.
+        // The genie knows the paths, but not when to fire: foreign sound sometimes hides one thing of seven.
         assert!(half_ms(&genie) < half_ms(&sound) && genie.never <= sound.never + 0.15, "{name}: {genie:?}");
         if under.condition.others {
             assert!(at_once.false_stops_per_min.value > 5.0 * ONE_A_MINUTE, "{name}: {at_once:?}");
@@ -65,7 +65,7 @@ fn controls_rank_as_they_must_in_every_condition() {
     }
 }
 
-// A corner of what `cargo lab measure --planted 20` shows.
+// This is a small part of `cargo lab measure --planted 20`.
 #[test]
 fn sound_way_is_recommended_over_planted_ones() {
     let sound = way("one_by_one_33ms");
@@ -74,11 +74,11 @@ fn sound_way_is_recommended_over_planted_ones() {
     let alone = &Condition::ALL[..3];
     let (chosen, measured) = (run(&ways, alone, 0, 5), run(&ways, alone, 22_000, 5));
     for (planted, control) in Control::PLANTED.iter().enumerate() {
-        // The planted one stands first, as the simpler.
+        // The planted way comes first, as the simpler one.
         let costs = measured.costs(&chosen, &[vec![planted], vec![3]]);
         assert_eq!(costs.recommended, Some(1), "{control:?}: {costs:?}");
     }
-    // A way is a draw with itself, and the first is taken.
+    // Two equal ways are a draw, and the first is recommended.
     let same = measured.costs(&chosen, &[vec![3], vec![3]]);
     assert_eq!((same.recommended, same.draw), (Some(0), None));
 }
@@ -90,7 +90,7 @@ fn rows_are_the_same_on_any_number_of_threads() {
     let measured = run(&ways, &both, 23_000, 1);
     let rows = measured.csv();
     assert_eq!(rows, run(&ways, &both, 23_000, 1).csv());
-    // Two conditions, seven rooms, two ways, six settings.
+    // There are two conditions, seven rooms, two ways and six settings.
     assert_eq!(rows.lines().count(), 2 * 7 * 2 * 6);
     let columns = Measured::CSV_HEAD.split(',').count();
     assert!(rows.lines().all(|row| row.split(',').count() == columns), "{rows}");

@@ -15,8 +15,8 @@ pub struct Estimate {
     pub interval_95: [f64; 2],
 }
 
-/// Bootstrap samples: for each sample, how often each room was drawn. All conditions of a set of rooms share the
-/// samples, so that ratios are paired.
+/// Bootstrap samples: the number of times that each room was drawn in each sample. All conditions of a set of rooms
+/// share the samples, so that ratios are paired.
 #[derive(Debug)]
 pub(super) struct Bootstrap(Vec<Vec<u16>>);
 
@@ -33,7 +33,7 @@ impl Bootstrap {
         Self((0..TIMES).map(again).collect())
     }
 
-    /// The values of a figure for all rooms, and for each sample.
+    /// Computes a figure for all rooms, and for each sample.
     pub(super) fn figures(&self, of: impl Fn(&[u16]) -> f64) -> Vec<f64> {
         let once = self.0.first().map_or(0, Vec::len);
         core::iter::once(vec![1; once]).chain(self.0.iter().cloned()).map(|counts| of(&counts)).collect()
@@ -41,7 +41,7 @@ impl Bootstrap {
 }
 
 impl Estimate {
-    /// An estimate from the value for all rooms and those for the samples.
+    /// Makes an estimate from the value for all rooms and the values for the samples.
     pub(super) fn of(figures: &[f64]) -> Self {
         let (value, mut again) =
             (figures.first().copied().unwrap_or(f64::NAN), figures.get(1..).unwrap_or(&[]).to_vec());
@@ -54,24 +54,24 @@ impl Estimate {
     }
 }
 
-/// Latencies by length, each with its room.
+/// Latencies in order of length, each with its room.
 #[derive(Debug)]
 pub(super) struct Latencies(Vec<(f64, usize)>);
 
 impl Latencies {
-    /// Latencies of all rooms in order; a room without a thing has none.
+    /// Sorts the latencies of all rooms, given in order; NaN for a room without a thing, which is left out.
     pub(super) fn new(latencies_ms: impl Iterator<Item = f64>) -> Self {
         let mut sorted: Vec<_> = latencies_ms.zip(0..).filter(|(latency, _)| !latency.is_nan()).collect();
         sorted.sort_by(|one, other| one.0.total_cmp(&other.0));
         Self(sorted)
     }
 
-    /// The 95th percentile with these weights of rooms; infinite if more than 5 % are never seen.
+    /// Returns the 95th percentile with these weights of rooms; infinite if more than 5 % are never seen.
     pub(super) fn t95_ms(&self, counts: &[u16]) -> f64 {
         self.within_ms(0.95, counts)
     }
 
-    /// The time within which a share of things is seen, with these weights of rooms.
+    /// Returns the time within which a share of things is seen, with these weights of rooms.
     pub(super) fn within_ms(&self, share: f64, counts: &[u16]) -> f64 {
         let count = |&(_, room): &(f64, usize)| counts.get(room).map_or(0, |&count| u32::from(count));
         let all: u32 = self.0.iter().map(count).sum();
@@ -84,7 +84,7 @@ impl Latencies {
         found.map_or(f64::INFINITY, |of| of.0)
     }
 
-    /// The share that is never seen.
+    /// Returns the share of things that are never seen.
     pub(super) fn never(&self) -> f64 {
         self.0.iter().filter(|of| of.0.is_infinite()).count() as f64 / self.0.len().max(1) as f64
     }
@@ -95,8 +95,8 @@ impl Latencies {
     }
 }
 
-/// A 95th percentile as it counts in a cost: things never seen count as seen after 5 s, so that two ways that both miss
-/// one in twenty are equal.
+/// Returns a 95th percentile as it counts in a cost: things never seen count as seen after 5 s, so that two ways that
+/// both miss one in twenty are equal.
 pub(super) fn capped_ms(t95_ms: f64) -> f64 {
     t95_ms.min(1e3 * NEVER_S)
 }
@@ -110,12 +110,12 @@ mod tests {
         let of = |never: usize| Latencies::new((0..100).map(|k| if k < never { f64::INFINITY } else { k as f64 }));
         assert_eq!((of(0).t95_ms(&[1; 100]), of(5).t95_ms(&[1; 100])), (94.0, 99.0));
         assert_eq!((of(6).t95_ms(&[1; 100]), of(6).never()), (f64::INFINITY, 0.06));
-        // A room without a thing does not count; one drawn twice counts twice.
+        // A room without a thing does not count; a room drawn twice counts twice.
         let three = Latencies::new([30.0, f64::NAN, 10.0].into_iter());
         assert_eq!((three.len(), three.t95_ms(&[1, 9, 1]), three.t95_ms(&[0, 9, 2])), (2, 30.0, 10.0));
     }
 
-    // A mean's bootstrap interval is that of its standard error.
+    // A mean's bootstrap interval is as wide as its standard error predicts.
     #[test]
     fn interval_is_as_wide_as_rooms_differ() {
         let bootstrap = Bootstrap::new(400, 1);

@@ -1,4 +1,4 @@
-//! Figures of ways under conditions, their settings, their costs, and the way to recommend.
+//! Figures of ways under conditions, their settings and costs, and the recommended way.
 
 use serde::Serialize;
 
@@ -9,9 +9,9 @@ use super::trial::Condition;
 use super::votes::Setting;
 use super::ways::{Family, MeasuredWay};
 
-/// The most false stops a minute at which ways are compared.
+/// Largest rate of false stops, per minute, at which ways are compared.
 pub const ONE_A_MINUTE: f64 = 1.0;
-/// With this many rooms or more, a difference above the share below is no draw.
+/// With this many rooms or more, a difference above the share below is not a draw.
 const MANY_ROOMS: usize = 400;
 const NO_DRAW: f64 = 0.2;
 
@@ -29,12 +29,12 @@ pub struct Point {
 pub enum Operating {
     /// The least t95 with no more false stops than asked for.
     At(Point),
-    /// No setting has as few; this one has the fewest.
+    /// No setting has few enough false stops; this setting has the fewest.
     None(Point),
 }
 
 impl Operating {
-    /// The setting, whether or not it has few enough false stops.
+    /// Returns the setting, whether or not it has few enough false stops.
     pub fn point(self) -> Point {
         let (Self::At(point) | Self::None(point)) = self;
         point
@@ -44,7 +44,7 @@ impl Operating {
 /// Figures of a way and setting under a condition.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Cell {
-    /// Things.
+    /// Number of things.
     pub things: usize,
     /// The times in which half of the things, and nine of ten, are seen, in ms.
     pub t50_t90_ms: [f64; 2],
@@ -52,24 +52,24 @@ pub struct Cell {
     pub t95_ms: Estimate,
     /// The share of things that are never seen.
     pub never: f64,
-    /// False stops.
+    /// Number of false stops.
     pub false_stops: u32,
     /// The time over which false stops were counted, in minutes.
     pub minutes: f64,
-    /// False stops a minute.
+    /// False stops per minute.
     pub false_stops_per_min: Estimate,
     /// Share of time in which foreign sound is believed and wrong.
     pub foreign: Estimate,
     /// Share of time with an echo in which the belief is right.
     pub right: Estimate,
-    /// Right echoes that are believed, a second.
+    /// Right echoes that are believed, per second.
     pub right_echoes_per_s: Estimate,
-    /// Blind sensors.
+    /// Number of blind sensors.
     pub blind: Estimate,
 }
 
 impl Under {
-    /// The settings of these ways that can fire the ring. Only one by one has a median.
+    /// Returns the settings of those ways that can fire the ring. Only one by one has a median.
     fn points(&self, measured: &Measured, ways: impl Fn(usize) -> bool) -> Vec<Point> {
         let of_way = |(way, of): (usize, &MeasuredWay)| {
             let fits = |it: &Setting| of.family == Family::OneByOne || *it != Setting::Median;
@@ -79,7 +79,7 @@ impl Under {
         fired.flat_map(of_way).collect()
     }
 
-    /// The figures of each room at a point.
+    /// Returns the figures of each room at a point.
     pub fn sights(&self, Point { way, setting }: Point) -> &[Sight] {
         let index = Setting::ALL.iter().position(|&it| it == setting).unwrap_or(0);
         self.sights[way].as_ref().map_or(&[], |by_setting| &by_setting[index])
@@ -91,9 +91,9 @@ impl Under {
         (latencies.t95_ms(&vec![1; sights.len()]), rate(sights, &vec![1; sights.len()]))
     }
 
-    /// The point at which some ways are used with at most this many false stops a minute. For each way it is the most
-    /// eager setting if that has few enough, else the setting with the least t95 that has; among the ways it is the one
-    /// with the least t95. `None` if none of them can fire the ring.
+    /// Returns the point at which some ways are used with at most this many false stops a minute. A way's point is its
+    /// most eager setting if this has few enough, or else the setting of least t95 that does; the way with the least
+    /// t95 is chosen. `None` if none of the ways can fire the ring.
     pub fn operating(&self, measured: &Measured, ways: impl Fn(usize) -> bool, most_per_min: f64) -> Option<Operating> {
         let points = self.points(measured, ways);
         let figures: Vec<_> = points.iter().map(|&point| (point, self.t95_and_rate(point))).collect();
@@ -110,7 +110,7 @@ impl Under {
         quickest.map(|of| Operating::At(of.0)).or_else(|| fewest().map(|of| Operating::None(of.0)))
     }
 
-    /// The figures at a point.
+    /// Computes the figures at a point.
     pub fn cell(&self, point: Point, measured: &Measured) -> Cell {
         let sights = self.sights(point);
         let latencies = Latencies::new(sights.iter().map(|sight| sight.latency_ms));
@@ -138,7 +138,7 @@ impl Under {
     }
 }
 
-/// False stops a minute with these weights of rooms.
+/// Returns the false stops per minute with these weights of rooms.
 fn rate(sights: &[Sight], counts: &[u16]) -> f64 {
     let sum = |of: fn(&Sight) -> f64| -> f64 {
         sights.iter().zip(counts).map(|(sight, &count)| of(sight) * f64::from(count)).sum()
@@ -146,35 +146,35 @@ fn rate(sights: &[Sight], counts: &[u16]) -> f64 {
     60.0 * sum(|sight| f64::from(sight.false_stops)) / sum(|sight| sight.watched_s)
 }
 
-/// The cost of a group of ways, of which the best is taken under each condition.
+/// The cost of a group of ways; under each condition the best way of the group counts.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cost {
     /// Operating points under each condition; fewer if no way of the group can fire the ring.
     pub operating: Vec<Operating>,
-    /// The geometric mean over the conditions of its t95 relative to that of the first group, which may have more false
-    /// stops; `None` without an operating point under a condition.
+    /// The geometric mean over the conditions of the group's t95 relative to that of the first group, which may have
+    /// more false stops; `None` without an operating point under a condition.
     pub cost: Option<Estimate>,
 }
 
-/// Costs of groups of ways, the simplest first, and which to recommend, each by its index.
+/// Costs of groups of ways, simplest first, and the recommended group, given by its index.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Costs {
-    /// Costs of each group.
+    /// The cost of each group.
     pub costs: Vec<Cost>,
-    /// The group to recommend; `None` if no group has a point under each condition.
+    /// The recommended group; `None` if no group has a point under each condition.
     pub recommended: Option<usize>,
-    /// A group of less cost that does not differ significantly from the recommended one.
+    /// A group of lower cost that does not differ significantly from the recommended one.
     pub draw: Option<usize>,
 }
 
 impl Measured {
-    /// Bootstrap samples, the same for all conditions of a set of rooms.
+    /// Returns bootstrap samples, the same for all conditions of a set of rooms.
     pub(super) fn bootstrap(&self, condition: Condition) -> Bootstrap {
         let rooms = self.under.iter().find(|under| under.condition == condition).map_or(0, |under| under.places.len());
         Bootstrap::new(rooms, u64::from(condition.others))
     }
 
-    /// The geometric mean over the conditions of one way's t95 relative to another's, with its interval.
+    /// Returns the geometric mean over the conditions of one way's t95 relative to another's, with its interval.
     fn ratio(&self, ones: &[Point], others: &[Point]) -> Estimate {
         let mut logs: Vec<f64> = vec![];
         for ((under, &one), &other) in self.under.iter().zip(ones).zip(others) {
@@ -189,8 +189,8 @@ impl Measured {
         Estimate::of(&logs.iter().map(|sum| libm::exp(sum / conditions)).collect::<Vec<_>>())
     }
 
-    /// The costs of groups of ways with points chosen in other rooms of the same conditions, and the group to
-    /// recommend: the one of the least cost, or a simpler one that does not differ significantly from it.
+    /// Computes the costs of groups of ways with points chosen in other rooms of the same conditions, and recommends
+    /// the group of lowest cost, or a simpler one that does not differ significantly from it.
     pub fn costs(&self, chosen: &Self, groups: &[Vec<usize>]) -> Costs {
         let operating = |group: &Vec<usize>| -> Vec<Operating> {
             let of = |under: &Under| under.operating(chosen, |way| group.contains(&way), ONE_A_MINUTE);
@@ -202,7 +202,7 @@ impl Measured {
         };
         let operating: Vec<_> = groups.iter().map(operating).collect();
         let points: Vec<_> = operating.iter().map(keeping).collect();
-        // One by one is what others are measured by even where it has more false stops than one a minute.
+        // Other ways are compared with one by one even if it has more than one false stop a minute.
         let base = operating.first().map(|of| of.iter().map(|it| it.point()).collect::<Vec<_>>());
         let base = base.filter(|base| base.len() == self.under.len());
         let against_base = |points: &Option<Vec<Point>>| Some(self.ratio(points.as_ref()?, base.as_ref()?));
@@ -214,8 +214,8 @@ impl Measured {
         Costs { costs, recommended, draw }
     }
 
-    /// Chooses among groups with their points under each condition, the simplest first: the one to recommend, and one
-    /// of less cost that does not differ significantly from it.
+    /// Recommends one of several groups, given with their points under each condition, simplest first. Also returns a
+    /// group of lower cost that does not differ significantly from the recommended one.
     fn recommend(&self, usable: &[(usize, &Vec<Point>)]) -> [Option<usize>; 2] {
         let Some((_, first)) = usable.first() else { return [None; 2] };
         let values: Vec<f64> = usable.iter().map(|(_, points)| self.ratio(points, first).value).collect();

@@ -15,15 +15,15 @@ use crate::{
 pub(super) struct Heard {
     pub(super) sensor: usize,
     pub(super) fired_s: f64,
-    /// Time when the reading was complete: when its echo ended, or the sensor had listened.
+    /// Time when the reading was complete: at the end of its echo, or of the listening time.
     pub(super) ready_s: f64,
     /// Position of the sensor when it fired.
     pub(super) seen: Pose,
     /// Echo time; NaN for silence.
     pub(super) t_echo_us: f64,
-    /// The reading that the sensor would have had alone.
+    /// The reading that the sensor would have alone.
     pub(super) reference_us: f64,
-    /// The change that odometry expects of a good reading since the sensor's firing before.
+    /// The change that odometry expects of a good reading since the sensor's previous firing.
     pub(super) change_us: f64,
     pub(super) cause: Cause,
     /// True if the way of firing believes the reading.
@@ -31,7 +31,7 @@ pub(super) struct Heard {
 }
 
 impl Heard {
-    /// The readings of a part of a trial.
+    /// Returns the readings of a part of a trial.
     pub(super) fn all(readings: &Readings, window: Micros) -> impl Iterator<Item = Self> + '_ {
         let listens_s = f64::from(window.as_micros()) * 1e-6;
         (0..readings.len()).filter(|&k| readings.robot[k] == 0).map(move |k| {
@@ -52,7 +52,7 @@ impl Heard {
         })
     }
 
-    /// Returns true if another's sound, or an earlier firing's, or one from outside was taken for an echo.
+    /// Returns true if the cause is sound of another sensor, of an earlier firing, or from outside.
     pub(super) fn is_foreign(cause: Cause) -> bool {
         matches!(cause, Cause::Stale | Cause::Crosstalk | Cause::External)
     }
@@ -63,25 +63,25 @@ impl Heard {
 pub enum Control {
     /// A control that believes nothing.
     Never,
-    /// A control that says 0.3 m at each firing.
+    /// A control that reports 0.3 m at each firing.
     Always,
     /// A control that holds each belief for 10 s.
     Holds,
-    /// A control that is told the paths, and believes its own sound of this firing alone.
+    /// A control that knows the paths, and believes only its own sound of this firing.
     Genie,
-    /// One sensor is masked.
+    /// A control in which one sensor is masked.
     Masked,
-    /// Readings arrive 300 ms late.
+    /// A control whose readings arrive 300 ms late.
     Late,
-    /// One reading in twenty is a sound from outside.
+    /// A control in which one reading in twenty is a sound from outside.
     Foreign,
 }
 
 impl Control {
-    /// Controls that are a sound way with something wrong planted in it.
+    /// Controls that are a sound way with a planted flaw.
     pub const PLANTED: [Self; 3] = [Self::Masked, Self::Late, Self::Foreign];
 
-    /// The normal lifetime of a belief under a control, and the time for which nothing replaces it, in seconds.
+    /// Returns the lifetime of a belief under a control, and the time for which nothing replaces it, in seconds.
     pub(super) fn life_s(control: Option<Self>, usual_s: f64) -> [f64; 2] {
         if control == Some(Self::Holds) { [10.0; 2] } else { [usual_s, 0.0] }
     }

@@ -1,31 +1,31 @@
-//! Ways of firing measured by what a robot needs: how soon it sees what steps in its way, and how often it stops for
-//! nothing.
+//! Ways of firing measured by a robot's needs: how soon it sees an object that appears, and how often it stops for no
+//! reason.
 //!
-//! **Trial.** A room of the [set](crate::experiments::rooms), in which the robot stands, drives along its free way and
-//! back, or turns on the spot, alone or (in the rooms of the kind `meeting`) with another robot of its make. Physics
-//! are the default ones, between floor and ceiling. At an instant uniform in 5 to 15 s one of five [things](ThingKind)
-//! appears and stays: before a uniformly drawn sensor, its nearest point uniform in 0.3 to 2 m from it and within 7.5
-//! degrees of its axis, with a clear line, touching nothing. Where that sensor, alone in quiet air at this pose, does
-//! not read it as its first echo in 9 of 10 firings, a second apart, or reads something as far away without it, another
-//! thing is drawn, and the share of those is the module's blindness. The trial ends 5 s later, when the robot would
-//! touch the thing, or when all settings have seen it. Paths of a robot that moves are searched for every 6 cm or 6
-//! degrees, once for all ways of firing, and carried on to each firing.
+//! **Trial.** The robot stands, drives along its free way and back, or turns on the spot in a room of the
+//! [set](crate::experiments::rooms), alone or (in rooms of the kind `meeting`) with another robot of its make. The
+//! physics is the default, between floor and ceiling. At a uniformly drawn instant in 5 to 15 s one of five
+//! [things](ThingKind) appears and stays. It appears before a uniformly drawn sensor: its nearest point is 0.3 to 2 m
+//! away and within 7.5 degrees of the axis, with a clear line, and it touches nothing. Alone in quiet air at this pose,
+//! the sensor must read the thing as its first echo in 9 of 10 firings, and no other echo from as far away. Otherwise
+//! another thing is drawn; the share of these things is the module's blindness. The trial ends after 5 s, before a
+//! contact, or when all settings have seen the thing. Paths of a moving robot are searched for every 6 cm or 6 degrees,
+//! once for all ways of firing, and carried on to each firing.
 //!
-//! **Seen** is the thing at the first belief within 8.6 cm of its nearest point, of any sensor whose reading alone
-//! would be that. Latency counts from its appearing to the end of the echo that completes the belief. The **t95** is
-//! the 95th percentile with what is never seen as infinite.
+//! A thing is **seen** at the first belief within 8.6 cm of its nearest point, by a sensor whose reading alone is as
+//! near. Latency counts from the appearance to the end of the echo that completes the belief. The **t95** is the 95th
+//! percentile of the latency, which is infinite for things that are never seen.
 //!
-//! **A false stop** is a belief in foreign, stale or outside sound, nearer than 1.5 m and nearer by 15 cm than every
-//! surface within 60 degrees of the sensor's axis, before the thing appears. It is the robot's: an onset after 1 s
-//! without one counts one, each further second of it one more.
+//! **A false stop** is a belief, before the thing appears, in foreign, stale or outside sound that is nearer than 1.5
+//! m, and by 15 cm nearer than every surface within 60 degrees of the sensor's axis. It counts for the whole robot:
+//! once if there was none for 1 s, and once more for each further second.
 //!
 //! **A belief** lasts until another replaces it, until the robot has moved 0.15 m or turned by 10 degrees, or for 2 s.
-//! It needs [votes](Setting). One simulation's readings serve all settings.
+//! It needs [votes](Setting). The readings of one simulation serve all settings.
 //!
-//! **One cost.** In rooms on which nothing is reported each [family](Family) of ways gets its setting, the least t95
-//! with at most one false stop a minute; in others the [cost](Measured::costs) is measured: the geometric mean over the
-//! conditions of its t95 relative to the best one by one. Intervals come from 2,000 bootstraps over rooms. Where the
-//! interval of a difference holds none, the simpler way is recommended.
+//! **One cost.** Each [family](Family) of ways gets its setting in rooms that are not reported: the least t95 with at
+//! most one false stop a minute. Its [cost](Measured::costs) is measured in other rooms: the geometric mean over the
+//! conditions of its t95 relative to the best one by one. Intervals come from 2,000 bootstraps over rooms. If the
+//! interval of a ratio contains 1, the simpler way is recommended.
 
 mod bootstrap;
 mod cost;

@@ -1,4 +1,4 @@
-//! Runs of all ways in all rooms under all conditions, and their rows as CSV.
+//! Runs of all ways in all rooms under all conditions, and the results as CSV.
 
 use core::fmt::Write as _;
 use core::ops::Range;
@@ -24,16 +24,16 @@ use crate::{
 pub struct MeasureAsked {
     /// The conditions.
     pub conditions: Vec<Condition>,
-    /// The number of the first room of each kind. Settings are chosen on numbers below 2,000, and reported from
+    /// The number of the first room of each kind. Settings are chosen in rooms below 2,000; figures are reported from
     /// [`FIRST`](crate::experiments::FIRST) on.
     pub first: u64,
-    /// Number of rooms of each of the seven kinds without another robot, and a seventh of those with one.
+    /// Number of rooms of each of the seven kinds without another robot; seven times as many have one.
     pub places: u64,
     /// The robot's speeds.
     pub speeds: Speeds,
 }
 
-/// A trial's room, and what appeared.
+/// A trial's room, and the thing that appeared.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Place {
     /// The room's kind and number.
@@ -46,7 +46,7 @@ pub struct Place {
     pub speed_m_s: f64,
 }
 
-/// Figures of one way in all rooms: by setting, in the order of [`Setting::ALL`], and room; or why it cannot fire.
+/// Figures of one way by setting, in the order of [`Setting::ALL`], and room; or the reason why the way cannot fire.
 pub type BySetting = Result<Vec<Vec<Sight>>, String>;
 
 /// Results of all ways under one condition.
@@ -60,28 +60,28 @@ pub struct Under {
     pub sights: Vec<BySetting>,
 }
 
-/// Ways measured.
+/// Ways with their figures under all conditions.
 #[derive(Clone, Debug)]
 pub struct Measured {
     /// The ways.
     pub ways: Vec<MeasuredWay>,
-    /// The conditions.
+    /// The results under each condition.
     pub under: Vec<Under>,
 }
 
 impl Under {
-    /// The share of things that fitted but that their own sensor does not read: the module's blindness.
+    /// Returns the share of fitting things that their own sensor does not read: the module's blindness.
     pub fn unread(&self) -> f64 {
         let sum = |of: fn(&Draws) -> u32| self.places.iter().map(|place| f64::from(of(&place.draws))).sum::<f64>();
         sum(|draws| draws.unread) / sum(|draws| draws.fitted).max(1.0)
     }
 }
 
-/// Measures ways, on all cores; each may be a control. Several threads call `keep_going` with the finished share, 0 to
-/// 1; if it returns `false`, the measurement stops. The result does not depend on the number of threads.
+/// Measures ways, each of them or its control, on all cores. Several threads call `keep_going` with the finished share,
+/// 0 to 1; if it returns `false`, the measurement stops. The result does not depend on the number of threads.
 ///
 /// # Errors
-/// [`ExperimentError`] for no ways, rooms or conditions, a room in which the robot cannot be, and if it was stopped.
+/// [`ExperimentError`] for no ways, rooms or conditions, for a room too small for the robot, and if it was stopped.
 pub fn measure(
     ways: &[(MeasuredWay, Option<Control>)],
     asked: &MeasureAsked,
@@ -97,7 +97,7 @@ pub fn measure(
     }
     let progress = Progress::new(jobs.len() as u64, keep_going);
     let robot = &first.way.robot;
-    // A control may need what comes after the thing is seen.
+    // A control may need readings from after the thing is seen.
     let until_seen = ways.iter().all(|(_, control)| control.is_none());
     let runs = sweep(&jobs, |&(condition, room)| {
         let trial = Trial::new(room, robot, condition, asked.speeds)?;
@@ -138,7 +138,7 @@ pub fn measure(
     Ok(Measured { ways: ways.iter().map(|(way, _)| way.clone()).collect(), under })
 }
 
-/// Figures of each of some ways, from the figures of all ways in each room.
+/// Regroups the figures of each room by way and setting.
 fn by_setting(mut by_room: Vec<Vec<Result<[Sight; Setting::ALL.len()], String>>>, ways: usize) -> Vec<BySetting> {
     let of_way = |way: usize| -> BySetting {
         let of_rooms: Vec<_> =
@@ -156,11 +156,11 @@ impl Trial {
     }
 }
 
-/// Measures methods of the first robot of a scene, one by one first, in trials with these numbers, on all cores;
-/// otherwise as [`measure`].
+/// Measures methods of the first robot of a scene like [`measure`], one by one first, in trials with these numbers, on
+/// all cores.
 ///
 /// # Errors
-/// [`ExperimentError`] for no robot or trials, for a scene that the robots cannot be in, and if it was stopped.
+/// [`ExperimentError`] for no robot or trials, for a scene without room for the robots, and if it was stopped.
 pub fn measure_in_scene(
     world: &World,
     methods: &[(Family, Method)],
@@ -194,7 +194,7 @@ pub fn measure_in_scene(
 }
 
 impl Measured {
-    /// The ways of each family, for [`costs`](Self::costs).
+    /// Returns the ways of each family, for [`costs`](Self::costs).
     pub fn families(&self) -> Vec<Vec<usize>> {
         let of = |family| (0..self.ways.len()).filter(|&way| self.ways[way].family == family).collect();
         Family::ALL.into_iter().map(of).collect()
@@ -204,8 +204,8 @@ impl Measured {
     pub const CSV_HEAD: &'static str = "condition,room,number,way,setting,thing,sensor,distance_m,drawn,unread,\
                                         speed_m_s,latency_ms,false_stops,watched_s,foreign,right,blind";
 
-    /// One row for each room, way, condition and setting, without a head: an infinite latency is `inf`, a missing value
-    /// is empty.
+    /// Returns one row for each room, way, condition and setting, without a head. An infinite latency is `inf`, a
+    /// missing value is empty.
     pub fn csv(&self) -> String {
         let mut out = String::new();
         for under in &self.under {

@@ -1,4 +1,4 @@
-//! A robot's success in a trial, judged by its beliefs: it sees the thing that appears, and does not stop for nothing.
+//! A robot's success in a trial, by its beliefs: it sees the thing that appears, and does not stop for no reason.
 
 use core::f64::consts::PI;
 
@@ -17,32 +17,32 @@ const STOPS_M: f64 = 1.5;
 const NEARER_M: f64 = 0.15;
 /// Angle from a sensor's axis within which surfaces count.
 const WITHIN_RAD: f64 = PI / 3.0;
-/// Time without a false stop after which an onset is a new one; each further such time counts once more.
+/// Time without a false stop after which an onset is a new one; each further period of this length counts once more.
 const APART_S: f64 = 1.0;
 /// Share of right readings below which a sensor is blind.
 const BLIND: f64 = 0.05;
 
-/// One trial's figures of one way and setting.
+/// The figures of one way and setting in a trial.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sight {
     /// Time from the thing's appearance to the first belief in it, in ms; infinite for never, NaN without a thing.
     pub latency_ms: f64,
-    /// False stops before the thing appeared.
+    /// Number of false stops before the thing appeared.
     pub false_stops: u32,
     /// The time over which false stops were counted, in seconds.
     pub watched_s: f64,
     /// Share of time in which foreign sound was believed and wrong.
     pub foreign: f64,
-    /// Share of time, where the sensor alone hears an echo, in which the belief was right.
+    /// Share of the time with an echo for the sensor alone in which the belief was right.
     pub right: f64,
-    /// Right echoes that were believed, a second.
+    /// Right echoes that were believed, per second.
     pub right_echoes_per_s: f64,
-    /// Sensors that were right in under 5 % of their readings.
+    /// Number of sensors that were right in less than 5 % of their readings.
     pub blind: u32,
 }
 
 impl Trial {
-    /// The figures of readings under a setting.
+    /// Computes the figures of readings under a setting.
     pub(super) fn sight(&self, robot: &Robot, heard: &[Heard], setting: Setting, control: Option<Control>) -> Sight {
         let life_s = Control::life_s(control, self.life_s());
         let sensors = robot.sensors.len();
@@ -95,7 +95,7 @@ impl Trial {
         }
     }
 
-    /// Latency from the thing's appearance to the first of these beliefs in it; NaN without a thing.
+    /// Returns the latency from the thing's appearance to the first of these beliefs in it; NaN without a thing.
     fn latency_ms<'b>(&self, robot: &Robot, beliefs: impl Iterator<Item = &'b Believed>) -> f64 {
         if self.thing.is_none() {
             return f64::NAN;
@@ -107,8 +107,8 @@ impl Trial {
         if late_s > NEVER_S { f64::INFINITY } else { 1e3 * late_s }
     }
 
-    /// Returns true if every setting has seen the thing by these readings: all up to a time, except those of sensors
-    /// that still listen then.
+    /// Returns true if every setting has seen the thing by these readings, which are complete up to a time except for
+    /// sensors that still listen then.
     pub(super) fn is_seen(&self, robot: &Robot, heard: &[Heard], until_s: f64) -> bool {
         let of_sensor = |sensor| heard.iter().filter(move |one| one.sensor == sensor).copied().collect::<Vec<_>>();
         let by_sensor: Vec<Vec<Heard>> = (0..robot.sensors.len()).map(of_sensor).collect();
@@ -120,7 +120,7 @@ impl Trial {
         })
     }
 
-    /// Returns true if it is a belief in the thing, of a sensor that alone would read it.
+    /// Returns true if the belief is in the thing, and the sensor alone would read the thing too.
     fn sees(&self, robot: &Robot, belief: &Believed) -> bool {
         let Believed { heard, t_echo_us, .. } = belief;
         let Some(thing) = self.thing.as_ref().filter(|_| heard.fired_s >= self.appears_s) else { return false };
@@ -130,14 +130,14 @@ impl Trial {
             && thing.changes(&self.plan, robot, heard.sensor, &heard.seen, us)
     }
 
-    /// Returns true if a robot would stop for a belief in foreign sound.
+    /// Returns true if a robot would stop for this belief in foreign sound.
     fn stops(&self, belief: &Believed) -> bool {
         let says_m = 0.5e-6 * self.c * belief.t_echo_us;
         says_m < STOPS_M && says_m + NEARER_M < nearest_m(&self.plan, &belief.heard.seen)
     }
 }
 
-/// The distance in metres of the nearest surface within 60 degrees of a sensor's axis.
+/// Returns the distance in metres of the nearest surface within 60 degrees of a sensor's axis.
 fn nearest_m(plan: &RoomPlan, seen: &Pose) -> f64 {
     let from = Point::from(seen.translation.vector);
     let side = |turn: f64| {
@@ -145,7 +145,7 @@ fn nearest_m(plan: &RoomPlan, seen: &Pose) -> f64 {
         Vector::new(libm::cos(rad), libm::sin(rad))
     };
     let (right, left) = (side(-WITHIN_RAD), side(WITHIN_RAD));
-    // The part of a wall on the left of the right border, and on the right of the left one.
+    // Clip the wall to the left of the right border, and to the right of the left border.
     let of_wall = |[mut one, mut end]: [Point; 2]| {
         for inside in [|to: Vector, border: Vector| cross(border, to), |to: Vector, border: Vector| cross(to, border)]
             .into_iter()
@@ -175,7 +175,7 @@ fn nearest_m(plan: &RoomPlan, seen: &Pose) -> f64 {
     walls.chain(poles).fold(f64::INFINITY, f64::min)
 }
 
-/// The number of false stops in these intervals of any sensor.
+/// Returns the number of false stops in these intervals of all sensors.
 fn false_stops(mut intervals: Vec<[f64; 2]>) -> u32 {
     intervals.sort_by(|one, other| one[0].total_cmp(&other[0]));
     let (mut count, mut last_s, mut of_it_s) = (0, f64::NEG_INFINITY, 0.0);
@@ -198,7 +198,7 @@ mod tests {
     #[test]
     fn false_stops_count_onsets_and_seconds() {
         assert_eq!(false_stops(vec![]), 0);
-        // Two sensors at once are one robot's; half a second later it is still the same one.
+        // Two sensors at once make one false stop of the robot; half a second later it is still the same one.
         assert_eq!(false_stops(vec![[1.0, 1.3], [1.1, 1.4], [1.9, 2.0]]), 1);
         assert_eq!(false_stops(vec![[1.0, 1.3], [2.4, 2.5]]), 2);
         assert_eq!(false_stops(vec![[1.0, 3.5]]), 3);
@@ -215,7 +215,7 @@ mod tests {
         );
         let at = |rad: f64| nearest_m(&room, &Pose::rotation(rad));
         assert!((at(0.0) - 3.0).abs() < 1e-9 && (at(1.0) - 3.0).abs() < 1e-9);
-        // Beyond 60 degrees of the perpendicular it is the border of the sector that meets the wall.
+        // Beyond 60 degrees of the perpendicular the border of the sector meets the wall.
         assert!((at(80f64.to_radians()) - 3.0 / libm::cos(20f64.to_radians())).abs() < 1e-9);
         assert_eq!(at(PI), f64::INFINITY);
         room.poles = vec![crate::Pole::new(1.0, 0.0, 0.1)];

@@ -1,4 +1,4 @@
-//! Things that appear before a robot: how they are drawn, where they are, and which sensor would read them alone.
+//! Things that appear before a robot: their choice, their places, and the sensors that would read them alone.
 
 use core::f64::consts::FRAC_PI_2;
 
@@ -17,7 +17,7 @@ use crate::{
 const NEAR_M: [f64; 2] = [0.3, 2.0];
 /// Greatest angle of a thing off the sensor's axis, in degrees.
 const ASIDE_DEG: f64 = 7.5;
-/// Number of firings of the sensor alone in quiet air, one a second, and of those that must read the thing first.
+/// Number of firings of the sensor alone in quiet air, one a second, and the number that must read the thing first.
 const FIRINGS: u32 = 10;
 const MUST_READ: usize = 9;
 /// Number of draws after which a trial has no thing.
@@ -31,11 +31,11 @@ pub enum ThingKind {
     Leg,
     /// A pole of 1.5 cm radius: a chair's leg.
     Chair,
-    /// A thin wall of 1 m whose end is nearest; it leads away from the sensor at any angle up to a right one.
+    /// A thin wall of 1 m with one end nearest; it leads away from the sensor at any angle up to 90 degrees.
     WallEnd,
     /// A panel 0.6 m wide that faces the sensor with its middle.
     Panel,
-    /// Two poles of 6 cm, 0.25 m apart as the sensor sees them, and a pole of 15 cm radius 0.2 m behind their middle.
+    /// Two poles of 6 cm radius, 0.25 m apart seen from the sensor; a pole of 15 cm radius is 0.2 m behind them.
     Person,
 }
 
@@ -44,7 +44,7 @@ impl ThingKind {
     pub const ALL: [Self; 5] = [Self::Leg, Self::Chair, Self::WallEnd, Self::Panel, Self::Person];
 }
 
-/// A thing at the place of its appearance.
+/// A thing at the place where it appears.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Thing {
     /// The kind.
@@ -62,7 +62,7 @@ pub(super) struct Thing {
 pub struct Draws {
     /// Number of things that fitted.
     pub fitted: u32,
-    /// Number of things that their sensor does not read: the module's blindness.
+    /// Number of fitting things that their sensor does not read: the module's blindness.
     pub unread: u32,
 }
 
@@ -112,7 +112,7 @@ impl Thing {
             if !thing.fits(world, pose) {
                 continue;
             }
-            // A wall that crosses another one does not fit either.
+            // A wall that crosses another does not fit either.
             let Ok(scene) = thing.scene(plan) else { continue };
             draws.fitted += 1;
             let seen = *pose * robot.sensors[thing.sensor];
@@ -128,19 +128,19 @@ impl Thing {
         None
     }
 
-    /// The room with the thing.
+    /// Returns the room with the thing.
     pub(super) fn scene(&self, plan: &RoomPlan) -> Result<Scene, crate::scene::SceneError> {
         let (walls, poles) = ([&plan.walls[..], &self.walls].concat(), [&plan.poles[..], &self.poles].concat());
         Scene::new(walls, poles, crate::scene::Air::default())?.with_room(Some(Room::DEFAULT))
     }
 
-    /// A scene of the caller's with the thing.
+    /// Returns the caller's scene with the thing.
     pub(super) fn added_to(&self, scene: &Scene) -> Result<Scene, crate::scene::SceneError> {
         let (walls, poles) = ([scene.walls(), &self.walls].concat(), [scene.poles(), &self.poles].concat());
         Scene::new(walls, poles, scene.air())?.with_room(scene.room().copied())
     }
 
-    /// Returns the parts as bodies in their places.
+    /// Returns the parts of the thing as bodies with their poses.
     fn bodies(&self) -> impl Iterator<Item = (Body, Pose)> + '_ {
         let poles = self.poles.iter().map(|pole| (Body::Disc(pole.radius_m), Pose::from(pole.centre.coords)));
         poles.chain(self.walls.iter().map(|wall| between(wall.from, wall.to)))
@@ -162,7 +162,7 @@ impl Thing {
         !others && scene.contact(&line, &middle).is_none()
     }
 
-    /// Returns the point nearest to a place.
+    /// Returns the point of the thing nearest to a place.
     fn nearest_point(&self, from: Point) -> Point {
         let of_pole = |pole: &Pole| pole.centre + (from - pole.centre).normalize() * pole.radius_m;
         let poles = self.poles.iter().map(of_pole);
@@ -170,7 +170,7 @@ impl Thing {
         points.min_by(|a, b| (a - from).norm().total_cmp(&(b - from).norm())).unwrap_or(from)
     }
 
-    /// The echo time off the thing's nearest point for a sensor at a place.
+    /// Returns the echo time of the thing's nearest point for a sensor at a place.
     pub(super) fn nearest_us(&self, c: f64, from: Point) -> f64 {
         2e6 * (self.nearest_point(from) - from).norm() / c
     }
@@ -188,7 +188,7 @@ impl Thing {
     }
 }
 
-/// Returns true if two echo times differ by no more than 8.6 cm.
+/// Returns true if two echo times differ by at most 8.6 cm.
 pub(super) fn is_near(one_us: f64, other_us: f64) -> bool {
     (one_us - other_us).abs() <= DEFAULT_TOLERANCE_US
 }
@@ -198,20 +198,20 @@ pub(super) fn agree(one_us: f64, other_us: f64) -> bool {
     is_near(one_us, other_us) || (one_us.is_nan() && other_us.is_nan())
 }
 
-/// A strip from one point to another.
+/// Makes a strip from one point to another.
 fn between(from: Point, to: Point) -> (Body, Pose) {
     let way = to - from;
     let pose = Pose::new(0.5 * (from.coords + to.coords), libm::atan2(way.y, way.x));
     (Body::Box(way.norm().max(1e-3) - 5e-4, 1e-3), pose)
 }
 
-/// The point of a line from one point to another that is nearest to a place.
+/// Returns the point nearest to a place on a line from one point to another.
 pub(super) fn nearest_of(from: Point, to: Point, place: Point) -> Point {
     let way = to - from;
     from + way * ((place - from).dot(&way) / way.norm_squared()).clamp(0.0, 1.0)
 }
 
-/// Readings of one sensor of a robot, alone in quiet air, one a second; empty if it cannot stand there.
+/// Simulates one sensor of a robot, alone in quiet air, one firing a second; `None` if it cannot stand there.
 fn alone(scene: Scene, robot: &Robot, sensor: usize, seen: &Pose, firings: u32, seed: u64) -> Option<Readings> {
     let second = eeruf_core::Micros::from_millis(1000);
     let mut one = Robot::with_sensors(*seen, vec![Pose::identity()], robot.transducer_of(sensor));

@@ -21,19 +21,19 @@ use crate::{
 
 /// The version of the set of trials. A trial is fixed by version and number.
 pub const VERSION: u32 = 1;
-/// Limits of the uniform instant at which a thing appears, in seconds: a trial measures false stops for 10 s on
-/// average.
+/// Limits of the uniform instant at which a thing appears, in seconds. On average a trial measures false stops for 10
+/// s.
 const APPEARS_S: [f64; 2] = [5.0, 15.0];
 /// The time in seconds after which a thing counts as never seen.
 pub const NEVER_S: f64 = 5.0;
-/// The longest trial.
+/// The longest duration of a trial, in seconds.
 const LONGEST_S: f64 = APPEARS_S[1] + NEVER_S;
-/// The random key of trials, beside those of the kinds of rooms.
+/// The random key of trials, next to the keys of the kinds of rooms.
 const THING: u64 = 200;
-/// Paths of a robot that moves are searched for again after this way in metres, and after this turn in degrees.
+/// Distance in metres and turn in degrees after which paths of a moving robot are searched for again.
 const STEP_M: f64 = 0.06;
 const STEP_DEG: f64 = 6.0;
-/// Times after the thing's appearing at which a trial may end, as it is seen, in seconds.
+/// Times after the thing's appearance, in seconds, at which the trial ends if the thing has been seen.
 const LOOKS_S: [f64; 5] = [0.25, 0.5, 1.0, 2.0, 3.5];
 /// Interval between checks for contact, in seconds.
 const LOOK_S: f64 = 0.01;
@@ -55,7 +55,7 @@ pub enum Moving {
 pub struct Condition {
     /// The robot's motion.
     pub moving: Moving,
-    /// True for another robot of its make close by, with a clock of its own.
+    /// True with another robot of the same make close by, which has its own clock.
     pub others: bool,
 }
 
@@ -82,8 +82,8 @@ impl Condition {
         }
     }
 
-    /// Rooms with this many places of each kind: alone, those of the seven kinds without another robot; otherwise as
-    /// many of the kind with one.
+    /// Returns the rooms of the condition: `places` rooms of each of the seven kinds without another robot, or seven
+    /// times as many of the kind with one.
     pub fn rooms(self, first: u64, places: u64) -> Vec<(RoomKind, u64)> {
         let alone = RoomKind::ALL.into_iter().filter(|&kind| kind != RoomKind::Meeting);
         match self.others {
@@ -102,7 +102,7 @@ pub struct Speeds {
     pub turn_rad_s: f64,
 }
 
-/// A trial: the same for every way of firing.
+/// A trial, the same for every way of firing.
 #[derive(Debug)]
 pub(super) struct Trial {
     pub(super) plan: RoomPlan,
@@ -112,15 +112,15 @@ pub(super) struct Trial {
     pub(super) appears_s: f64,
     /// Time when the trial ends: before the robot touches the thing, or after the time for seeing it.
     pub(super) ends_s: f64,
-    /// The robot's speeds, at most one of which is not 0.
+    /// The robot's speeds, of which at most one is not 0.
     pub(super) speeds: Speeds,
     pub(super) c: f64,
-    /// Paths before the thing appears, and after, of a robot that moves.
+    /// Paths of a moving robot before and after the thing appears.
     shared: Option<[Arc<SharedPaths>; 2]>,
 }
 
 impl Trial {
-    /// The trial of a room for a robot under a condition.
+    /// Makes the trial of a room for a robot under a condition.
     pub(super) fn new(
         (kind, number): (RoomKind, u64),
         robot: &Robot,
@@ -130,7 +130,7 @@ impl Trial {
         let plan = RoomPlan::random(kind, number, robot.radius_m());
         let speeds = match condition.moving {
             Moving::Standing => Speeds { speed_m_s: 0.0, turn_rad_s: 0.0 },
-            // A leg of its way lasts a second or more.
+            // Each leg of its way lasts at least a second.
             Moving::Driving if plan.turns() => Speeds { speed_m_s: asked.speed_m_s.min(plan.way_m()), turn_rad_s: 0.0 },
             // The alcove's robot does not come back.
             Moving::Driving => Speeds { speed_m_s: asked.speed_m_s.min(plan.way_m() / LONGEST_S), turn_rad_s: 0.0 },
@@ -142,7 +142,7 @@ impl Trial {
         Ok(Self::drawn(plan, &world, speeds, appears_s, random))
     }
 
-    /// A trial of the first robot of a scene, as it stands or moves there.
+    /// Makes a trial of the first robot of a scene, standing or moving as in the scene.
     pub(super) fn in_scene(world: &World, number: u64) -> Option<Self> {
         let (robot, scene) = (world.robots().first()?, world.scene());
         let plan = RoomPlan::own(number, scene.walls().to_vec(), scene.poles().to_vec(), robot.pose, 0.0);
@@ -171,13 +171,13 @@ impl Trial {
         trial
     }
 
-    /// The duration of a leg of the robot's way, in seconds, if it drives back and forth.
+    /// Returns the duration of a leg of the robot's way, in seconds, if it drives back and forth.
     fn leg_s(&self) -> Option<f64> {
         let is_asked = self.speeds.speed_m_s > 0.0 && self.plan.turns();
         is_asked.then(|| self.plan.way_m() / self.speeds.speed_m_s)
     }
 
-    /// The robot's pose at a time.
+    /// Returns the robot's pose at a time.
     fn pose(&self, world: &World, at_s: f64) -> Pose {
         let robot = &world.robots()[0];
         let straight = |at_s| robot.motion.at(&robot.pose, at_s).pose;
@@ -186,14 +186,14 @@ impl Trial {
         straight(in_turn_s.min(2.0 * leg_s - in_turn_s))
     }
 
-    /// The life of a belief: until the robot has moved by 0.15 m or turned by 10 degrees, or for 2 s.
+    /// Returns the lifetime of a belief: until the robot has moved by 0.15 m or turned by 10 degrees, at most 2 s.
     pub(super) fn life_s(&self) -> f64 {
         let Speeds { speed_m_s, turn_rad_s } = self.speeds;
         (0.15 / speed_m_s).min(10f64.to_radians() / turn_rad_s.abs()).min(2.0)
     }
 
-    /// Readings of the first robot by a way of firing, in the order in which they were complete; if asked, no more
-    /// than are needed to see the thing.
+    /// Simulates a way of firing and returns the first robot's readings in the order in which they were complete. If
+    /// `until_seen`, the readings end when all settings have seen the thing.
     pub(super) fn heard(
         &self,
         way: &RoomWay,
@@ -207,7 +207,7 @@ impl Trial {
         self.heard_in(&world, how, |thing, _| thing.scene(&self.plan), (until_seen, shared), keep_going)
     }
 
-    /// Readings in a scene of the caller's, by a method.
+    /// Simulates a method in the caller's scene and returns the readings.
     pub(super) fn heard_in_scene(
         &self,
         world: &World,
@@ -275,7 +275,7 @@ enum Event {
     Ends,
 }
 
-/// Readings in the order in which they were complete.
+/// Sorts readings by the time when they were complete.
 fn sorted(heard: &mut [Heard]) -> &[Heard] {
     heard.sort_by(|one, other| one.ready_s.total_cmp(&other.ready_s));
     heard

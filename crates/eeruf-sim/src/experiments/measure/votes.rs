@@ -1,4 +1,4 @@
-//! Settings of votes: which of a sensor's readings are believed.
+//! Settings of votes, which decide the readings that are believed.
 
 use core::fmt;
 
@@ -13,15 +13,15 @@ use crate::results::{Cause, DEFAULT_TOLERANCE_US};
 /// Votes that a reading needs to be believed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Setting {
-    /// `m` of a sensor's last `n` readings agree with it, itself included: within 8.6 cm, carried on by odometry, or
-    /// both silent.
+    /// A reading is believed if `m` of the sensor's last `n` readings agree with it, itself included: within 8.6 cm,
+    /// adjusted by odometry, or both silent.
     Votes {
         /// Number of readings that must agree.
         m: usize,
         /// Number of the last readings that vote.
         n: usize,
     },
-    /// The median of a sensor's last three readings is believed. Silence is beyond all echoes.
+    /// The median of a sensor's last three readings is believed. Silence counts as longer than all echoes.
     Median,
 }
 
@@ -58,8 +58,8 @@ pub(super) struct Believed {
     pub(super) until_s: f64,
 }
 
-/// The beliefs of one sensor, from its readings in order: each ends when the next begins or its life is over. `holds_s`
-/// is the time for which nothing replaces one.
+/// Returns the beliefs of one sensor, from its readings in order. Each belief ends when the next begins or its life is
+/// over. `life_s` is its lifetime, and the time for which nothing replaces it.
 pub(super) fn believed(heard: &[Heard], setting: Setting, life_s: [f64; 2]) -> Vec<Believed> {
     let near = Micros::new(DEFAULT_TOLERANCE_US as u32);
     match setting {
@@ -70,7 +70,7 @@ pub(super) fn believed(heard: &[Heard], setting: Setting, life_s: [f64; 2]) -> V
     .unwrap_or_default()
 }
 
-/// The beliefs by one of core's judges, for which a reading that its way does not believe has no information.
+/// Returns the beliefs of a core judge; a reading that its way does not believe gives the judge no information.
 fn by(mut judge: impl Judge, heard: &[Heard], [life_s, holds_s]: [f64; 2]) -> Vec<Believed> {
     let mut beliefs: Vec<Believed> = vec![];
     for (number, reading) in heard.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! The ways of firing that are measured, in families from the simplest on.
+//! The measured ways of firing, in families, the simplest first.
 
 use core::fmt;
 
@@ -10,12 +10,12 @@ use crate::{
     world::{AnySchedule, FiringTable, Robot},
 };
 
-/// Ways of one kind, of which the best is taken under each condition. The simplest are first.
+/// Ways of one kind; under each condition the best of them counts. The simplest families come first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub enum Family {
-    /// One sensor after the other: with gaps of 10, 20, 33 ms, with the module's quiet, and as a loop that blocks.
+    /// One sensor after the other: with gaps of 10, 20 and 33 ms, with the module's quiet, and as a blocking loop.
     OneByOne,
-    /// Groups far apart.
+    /// Groups of sensors that are far apart.
     Groups,
     /// Two phases, at the shortest period and at longer ones.
     TwoPhases,
@@ -27,7 +27,7 @@ impl Family {
     /// All families, the simplest first.
     pub const ALL: [Self; 4] = [Self::OneByOne, Self::Groups, Self::TwoPhases, Self::Flow];
 
-    /// The family of a way, by its name; `None` for a way that is not measured.
+    /// Returns the family of a way, by its name; `None` for a way that is not measured.
     fn of(name: &str) -> Option<Self> {
         match name {
             "sequential" => Some(Self::OneByOne),
@@ -50,7 +50,7 @@ impl fmt::Display for Family {
     }
 }
 
-/// A way that is measured.
+/// A way of firing with its family.
 #[derive(Clone, Debug)]
 pub struct MeasuredWay {
     /// The family.
@@ -59,7 +59,7 @@ pub struct MeasuredWay {
     pub way: RoomWay,
 }
 
-/// The ways for a ring, one by one first; `schedule` is as for [`RoomWay::all`].
+/// Returns the measured ways for a ring, one by one first; `schedule` is as in [`RoomWay::all`].
 pub fn measured_ways(robot: &Robot, schedule: Option<&AnySchedule>) -> Vec<MeasuredWay> {
     let usual = RoomWay::all(robot, schedule).into_iter().filter_map(|way| {
         let family = Family::of(way.name)?;
@@ -72,7 +72,7 @@ pub fn measured_ways(robot: &Robot, schedule: Option<&AnySchedule>) -> Vec<Measu
     let more = [("one_by_one_10ms", 10), ("one_by_one_20ms", 20), ("one_by_one_33ms", 33)].map(|(name, gap_ms)| {
         let mut robot = quiet.robot.clone();
         let sensors = robot.sensors.len() as u32;
-        // No module before its rest, and none while it listens.
+        // No module is triggered before its rest is over, or while it listens.
         let needs = robot.module_rest().max(robot.window.saturating_add(Micros::new(1)));
         let period = Micros::from_millis(gap_ms * sensors).max(needs).as_micros();
         let row =

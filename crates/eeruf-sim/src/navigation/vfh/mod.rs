@@ -88,7 +88,7 @@ impl Vfh {
     /// m = c^2 (a - b d)        with a - b d_max = 0
     /// ```
     ///
-    /// with the certainty `c` as a share of the highest, the cell's distance `d`, and the window corner's `d_max`.
+    /// with the certainty `c` as a share of the highest, the cell's distance `d`, and the corner's distance `d_max`.
     pub fn histogram(&self, grid: &Himm, place: Point) -> Histogram {
         let mut histogram = [0.0; SECTORS];
         let d_max = core::f64::consts::SQRT_2 * 0.5 * self.window.saturating_sub(1) as f64 * grid.cell_m();

@@ -9,7 +9,7 @@ use eeruf_sim::*;
 
 const DISTANCES_M: [f64; 6] = [0.5, 0.75, 1.0, 2.0, 4.0, 8.0];
 
-/// The widest angle at which a wall is heard, in degrees, in steps of a tenth.
+/// Returns the widest angle at which a wall is heard, in degrees, in steps of a tenth.
 fn widest_deg(distance_m: f64, gain: GainProfile) -> Option<f64> {
     let (air, transducer) = (Air::default(), Transducer { gain, ..Transducer::POLAROID_6500 });
     let piston = transducer.piston(air);

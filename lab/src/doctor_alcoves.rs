@@ -84,7 +84,7 @@ fn world(number: u64, drives: bool, physics: Physics, sensor: Option<usize>) -> 
     Ok(World::new(alcove.scene()?, vec![robot], Noise::default())?.with_physics(physics)?)
 }
 
-/// The doctor's findings on readings: sensor, firing in seconds and echo in microseconds.
+/// Returns the doctor's findings on readings: sensor, firing in seconds and echo in microseconds.
 fn examine(readings: &[(u8, f64, f64)], speed_of_sound: f64) -> Result<Examination, Box<dyn Error>> {
     let mut text = "time_us,sensor,range_m\n".to_owned();
     for (sensor, fired_s, echo_us) in readings {

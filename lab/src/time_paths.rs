@@ -1,6 +1,6 @@
-//! Times the path finder on the scenes of the shared corpus and prints one JSON object: per scene the microseconds of
-//! the core (images seen) and of the whole answer (sorted, with angles and amplitudes), single thread, best of many
-//! runs. An argument names the only scene to time.
+//! Times the path finder on the scenes of the shared corpus and prints one JSON object. Per scene it gives the
+//! microseconds of the core (images seen) and of the whole answer (sorted, with angles and amplitudes), on one thread,
+//! as the best of many runs. An argument names the only scene to time.
 
 use eeruf_sim::{Air, Limits, Paths, Point, Scene, Tracer, Wall};
 use serde_json::{Value, json};

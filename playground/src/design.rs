@@ -68,7 +68,7 @@ pub(crate) struct Certificate {
     checker: &'static str,
 }
 
-/// The shortest period for a ring file.
+/// Returns the shortest period for a ring file.
 pub(crate) fn design(ring: &str) -> Result<DesignAnswer, String> {
     let design = shortest(ring)?;
     let spec = &design.spec;

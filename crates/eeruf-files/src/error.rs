@@ -33,7 +33,7 @@ impl FileError {
         Self::new(Path::new(""), message)
     }
 
-    /// A failure to read a file.
+    /// Makes the error of a file that cannot be read.
     pub fn reading(file: &Path, error: &io::Error) -> Self {
         let is_toml = file.extension().is_some_and(|ending| ending == "toml");
         if let Some(meant) = alike(file).filter(|_| error.kind() == ErrorKind::NotFound) {
@@ -51,7 +51,7 @@ impl FileError {
         Self::new(file, format!("{error}; {advice}"))
     }
 
-    /// A failure to write a file.
+    /// Makes the error of a file that cannot be written.
     pub fn writing(file: &Path, error: &io::Error) -> Self {
         let is_full =
             matches!(error.kind(), ErrorKind::StorageFull | ErrorKind::QuotaExceeded | ErrorKind::FileTooLarge);
@@ -88,17 +88,17 @@ impl FileError {
         Self { file: file.to_owned(), ..self }
     }
 
-    /// The file; an empty path for a text that is in no file.
+    /// Returns the file; an empty path for a text that is in no file.
     pub fn file(&self) -> &Path {
         &self.file
     }
 
-    /// The line, counted from 1, if the error is in a line.
+    /// Returns the line, counted from 1, if the error is in a line.
     pub fn line(&self) -> Option<u64> {
         self.line
     }
 
-    /// The error and what is expected, without the place.
+    /// Returns the error and what is expected, without the place.
     pub fn message(&self) -> &str {
         &self.message
     }

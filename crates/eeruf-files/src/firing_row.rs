@@ -5,7 +5,7 @@ use std::fmt::Display;
 /// The columns of a firing's row; a log may have more.
 pub const FIRING_COLUMNS: &str = "sensor,fired_us,period,phase,t_echo_us,reading";
 
-/// The row of a firing, with the ring's verdict. Sensors, periods and phases are counted from 0.
+/// Returns the row of a firing, with the ring's verdict. Sensors, periods and phases are counted from 0.
 ///
 /// ```
 /// assert_eq!(eeruf_files::firing_row(4, 15_000, 0, 1, Some(5872), "rejected"), "4,15000,0,1,5872,rejected");

@@ -20,12 +20,12 @@ impl Default for Air {
 }
 
 impl Air {
-    /// The default air at another temperature.
+    /// Makes the default air at another temperature.
     pub fn at(temperature_c: f64) -> Self {
         Self { temperature_c, ..Self::default() }
     }
 
-    /// Speed of sound in m/s:
+    /// Returns the speed of sound in m/s:
     ///
     /// ```text
     /// c = 343.2 sqrt(T / 293.15 K)
@@ -38,8 +38,8 @@ impl Air {
         343.2 * libm::sqrt((self.temperature_c + 273.15) / 293.15)
     }
 
-    /// Absorption in dB per metre at a frequency in Hz, ISO 9613-1 Eqs. (3) to (5) with the saturation pressure of its
-    /// Annex B.
+    /// Returns the absorption in dB per metre at a frequency in Hz, ISO 9613-1 Eqs. (3) to (5) with the saturation
+    /// pressure of its Annex B.
     ///
     /// ```
     /// let alpha = eeruf_modules::Air::default().absorption_db_per_m(49_400.0);

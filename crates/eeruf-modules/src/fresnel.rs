@@ -38,12 +38,12 @@ const fn far_terms(k: usize) -> [f64; FAR_TERMS] {
 const NEAR: [[f64; NEAR_TERMS]; 2] = [near_terms(0), near_terms(1)];
 const ASYMPTOTIC: [[f64; FAR_TERMS]; 2] = [far_terms(0), far_terms(1)];
 
-/// Horner's rule.
+/// Evaluates a polynomial by Horner's rule.
 fn polynomial(terms: &[f64], at: f64) -> f64 {
     terms.iter().rev().fold(0.0, |sum, term| sum * at + term)
 }
 
-/// Fresnel's integrals `C` and `S` from 0 to `x`, for `x >= 0`, which may be infinite:
+/// Returns Fresnel's integrals `C` and `S` from 0 to `x`, for `x >= 0`, which may be infinite:
 ///
 /// ```text
 /// C(x) + i S(x) = integral of exp(i pi t^2 / 2) from 0 to x

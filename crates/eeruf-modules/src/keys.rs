@@ -206,7 +206,7 @@ impl Key {
         matches!(self.kind, Kind::Number { scale, .. } if scale == 1.0)
     }
 
-    /// The value of this figure.
+    /// Returns the value of this figure.
     pub fn of(&self, module: &Module) -> Value<'static> {
         match self.kind {
             Kind::Number { scale, get, .. } => Value::Number(f64::from(get(module)) / scale),

@@ -51,7 +51,7 @@ macro_rules! words {
             /// All variants, with their names in files.
             pub const NAMES: [(&'static str, Self); [$($word),+].len()] = [$(($word, Self::$variant)),+];
 
-            /// The name in files.
+            /// Returns the name in files.
             pub const fn name(self) -> &'static str {
                 match self {
                     $( Self::$variant => $word, )+
@@ -130,7 +130,7 @@ impl NoEcho {
     /// The names in files; `holds` goes with `hold_us`.
     pub const NAMES: [&'static str; 3] = ["holds", "silent", "reports"];
 
-    /// The name in files.
+    /// Returns the name in files.
     pub const fn name(self) -> &'static str {
         match self {
             Self::Holds { .. } => "holds",
@@ -139,7 +139,7 @@ impl NoEcho {
         }
     }
 
-    /// Time for which the module holds its line, in us; 0 if it does not.
+    /// Returns the time for which the module holds its line, in us; 0 if it does not.
     pub const fn hold_us(self) -> u32 {
         match self {
             Self::Holds { us } => us,

@@ -29,7 +29,7 @@ impl Piston {
         Self { ka: wave_number * radius_m, floor: Self::DEFAULT_FLOOR, beam: Beam::default() }
     }
 
-    /// Amplitude at an angle off the axis, 1 on it:
+    /// Returns the amplitude at an angle off the axis, 1 on it:
     ///
     /// ```text
     /// D = |2 J1(x) / x|,   x = k a sin(theta)
@@ -69,7 +69,7 @@ impl Piston {
         self.lobe(self.ka * libm::sin(off)).max(self.floor)
     }
 
-    /// Share of the amplitude that the end of the baffle leaves at an angle of 0 to pi, 1 on the axis.
+    /// Returns the share of the amplitude that the end of the baffle leaves at an angle of 0 to pi, 1 on the axis.
     fn rim(&self, off: f64) -> f64 {
         let edge_wave = |x: f64| {
             let [c, s] = fresnel(x.abs() * libm::sqrt(2.0 / PI));
@@ -87,8 +87,8 @@ impl Piston {
         (2.0 * libm::j1(x) / x).abs()
     }
 
-    /// The angle, within the main lobe, at which the pattern has fallen to a level in dB (negative). None if the lobe
-    /// does not fall that far within 90 degrees, or the level is above 0 dB.
+    /// Returns the angle, within the main lobe, at which the pattern has fallen to a level in dB (negative). `None` if
+    /// the lobe does not fall that far within 90 degrees, or the level is above 0 dB.
     pub fn angle_at_db(&self, level_db: f64) -> Option<f64> {
         let level = libm::exp10(level_db / 20.0);
         let (mut low, mut high) = (0.0, FIRST_NULL.min(self.ka));

@@ -36,7 +36,7 @@ pub fn find(name: &str) -> Option<&'static Module> {
     PRESETS.iter().map(|preset| preset.module).find(|module| same(module.name))
 }
 
-/// The names of the presets.
+/// Returns the names of the presets.
 pub fn names() -> impl Iterator<Item = &'static str> {
     PRESETS.iter().map(|preset| preset.module.name)
 }

@@ -1,4 +1,4 @@
-//! The presets are whole: every figure has one source, and the figures agree with each other.
+//! The presets are complete: every figure has one source, and the figures agree with each other.
 
 use eeruf_modules::{Gain, HC_SR04, KEYS, Module, NoEcho, PRESETS, Source, Value, find};
 

@@ -35,8 +35,8 @@ impl Candidate {
 /// Seed of the candidates.
 const SEED: u64 = 1991;
 
-/// The candidate of a number: the published pilot without and with the growth rate operator, then drawn ones. The pilot
-/// that all methods once shared is excluded, since it was found by the score of one method.
+/// Returns the candidate of a number: the published pilot without and with the growth rate operator, then drawn ones.
+/// The pilot that all methods once shared is excluded, since it was found by the score of one method.
 pub(crate) fn candidate(number: usize) -> Candidate {
     let published = Candidate {
         smoothing: 5,

@@ -19,7 +19,7 @@ pub(crate) struct Log {
 }
 
 impl Log {
-    /// The log of a search with these rounds, in a folder that is created if necessary. A truncated line is tried
+    /// Opens the log of a search with these rounds, in a folder that is created if necessary. A truncated line is tried
     /// again.
     pub(crate) fn open(folder: &Path, rounds: &[Round]) -> io::Result<Self> {
         fs::create_dir_all(folder)?;

@@ -14,7 +14,7 @@ use super::search::{Search, Tuned};
 
 const SMALL: [Round; 2] = [Round { pilots: 3, courses: 1 }, Round { pilots: 2, courses: 2 }];
 
-/// A folder of this test's own, empty.
+/// Makes an empty folder for this test.
 fn folder(name: &str) -> PathBuf {
     let folder = std::env::temp_dir().join(format!("eeruf-tune-{}-{name}", std::process::id()));
     fs::remove_dir_all(&folder).ok();

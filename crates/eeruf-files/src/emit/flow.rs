@@ -43,7 +43,7 @@ impl<const K: usize> Flow<'_, K> {
         FlowTab { source: self, name }.to_string()
     }
 
-    /// Returns for each sensor the number of the echo line that it shares, from 1; 0 for a line of its own.
+    /// Returns the number of each sensor's shared echo line, from 1; 0 for a line of its own.
     fn lines(&self) -> impl Iterator<Item = u32> + Clone {
         (0..self.sensors).map(|sensor| {
             let shares = |(_, set): &(u32, &u64)| *set >> sensor & 1 == 1;

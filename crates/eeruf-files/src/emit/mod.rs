@@ -17,17 +17,17 @@ use crate::ScheduleFile;
 
 /// A schedule that can be written as source text.
 pub trait Emit {
-    /// A `const RING` in Rust, with the `requirements` for the compiler to check (see `eeruf_core::schedule!`).
+    /// Returns a `const RING` in Rust, with `requirements` for the compiler to check (see `eeruf_core::schedule!`).
     fn to_rust(&self, requirements: &Requirements<'_>) -> String;
 
-    /// A C99 header that includes only `<stdint.h>`, with the firing times and their requirements. If `eeruf.h` is
-    /// included first, the header also defines the constant `eeruf_schedule` for `eeruf_ring_init`.
+    /// Returns a C99 header that includes only `<stdint.h>`, with the firing times and their requirements. If `eeruf.h`
+    /// is included first, it also defines the constant `eeruf_schedule` for `eeruf_ring_init`.
     fn to_c(&self, requirements: &Requirements<'_>) -> String;
 
-    /// A file of an Arduino sketch that uses the library in `c/arduino`, with the schedule as a constant of this name.
+    /// Returns a file of an Arduino sketch for the library in `c/arduino`, with the schedule as a constant `name`.
     fn to_arduino(&self, requirements: &Requirements<'_>, name: &str) -> String;
 
-    /// A schedule file, as the program reads it: lags and waits, or firing times if all lags are zero.
+    /// Returns a schedule file, as the program reads it: lags and waits, or firing times if all lags are zero.
     fn to_toml(&self) -> String;
 }
 

@@ -3,8 +3,8 @@
 
 use core::f64::consts::{PI, TAU};
 
-/// Far scattered pressure of a rigid cylinder, `|p_s / p_i| sqrt(r / a)`, for `ka`, the wave number times the radius,
-/// and the scattering angle `phi_rad`; pi is back towards the source.
+/// Returns the far scattered pressure of a rigid cylinder, `|p_s / p_i| sqrt(r / a)`, for `ka`, the wave number times
+/// the radius, and the scattering angle `phi_rad`; pi is back towards the source.
 ///
 /// ```text
 /// sqrt(2 / (pi k a)) | sum e_n J_n'(ka) / H_n'(ka) cos(n phi) |,    e_0 = 1, e_n = 2
@@ -37,7 +37,7 @@ pub fn rigid_cylinder_form(ka: f64, phi_rad: f64) -> f64 {
     (2.0 / (PI * ka)).sqrt() * libm::hypot(real, imaginary)
 }
 
-/// Reflection of a rigid cylinder relative to geometric optics, `sqrt(cos(i) / 2)`, at an angle of incidence `i`.
+/// Returns the reflection of a rigid cylinder relative to geometric optics, `sqrt(cos(i) / 2)`, at an incidence `i`.
 ///
 /// ```
 /// let eight_millimetres = eeruf_sim::pole_wave_correction(std::f64::consts::TAU * 49_400.0 / 343.2 * 0.004, 0.0);
@@ -47,7 +47,7 @@ pub fn pole_wave_correction(ka: f64, incidence_rad: f64) -> f64 {
     rigid_cylinder_form(ka, PI - 2.0 * incidence_rad) / (0.5 * libm::cos(incidence_rad)).sqrt()
 }
 
-/// Keller's diffraction coefficient of a rigid edge, in the square root of a metre.
+/// Returns Keller's diffraction coefficient of a rigid edge, in the square root of a metre.
 ///
 /// `wave_number` is in rad/m. `outside_rad` is the open angle around the edge (3 pi / 2 at a right-angle corner seen
 /// from outside). The two directions are measured from one of the walls. At distances `s'` and `s` the amplitude

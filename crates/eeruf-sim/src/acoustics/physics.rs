@@ -63,7 +63,7 @@ impl Physics {
     /// The presets by their names.
     pub const PRESETS: [(&'static str, Self); 2] = [("plain", Self::PLAIN), ("default", Self::DEFAULT)];
 
-    /// The name of this preset; `None` for other physics.
+    /// Returns the name of this preset; `None` for other physics.
     pub fn name(&self) -> Option<&'static str> {
         Self::PRESETS.iter().find(|(_, preset)| preset == self).map(|(name, _)| *name)
     }

@@ -79,7 +79,7 @@ impl Transducer {
     /// see `docs/explanation/physics.md`.
     pub const HC_SR04: Self = Self::of(&eeruf_modules::HC_SR04);
 
-    /// The acoustics of a module.
+    /// Takes the acoustics from a module.
     pub const fn of(module: &Module) -> Self {
         Self {
             frequency_hz: module.frequency_hz as f64,
@@ -132,7 +132,7 @@ impl Transducer {
         (self.frequency_hz - other.frequency_hz).abs() < 0.5 * (self.bandwidth_hz + other.bandwidth_hz)
     }
 
-    /// Length of the burst in seconds.
+    /// Returns the length of the burst in seconds.
     pub fn burst_s(&self) -> f64 {
         f64::from(self.cycles) / self.frequency_hz
     }

@@ -13,7 +13,7 @@ pub(super) fn by_name<S: Serializer, T: Serialize>(entries: &[(String, T)], seri
     map.end()
 }
 
-/// Pairs of methods' names and values.
+/// Returns pairs of methods' names and values.
 pub(super) fn named<T>(methods: &[Entry], of: impl IntoIterator<Item = T>) -> Vec<(String, T)> {
     methods.iter().map(|entry| entry.name().to_owned()).zip(of).collect()
 }

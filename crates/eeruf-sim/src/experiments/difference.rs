@@ -49,7 +49,7 @@ impl Difference {
     }
 }
 
-/// Number of the `n` values on either side of the sign test's 95 % interval of the median.
+/// Returns the number of the `n` values on either side of the sign test's 95 % interval of the median.
 fn outside(n: usize) -> Option<usize> {
     let mut below = 0.0;
     let beyond = (0..n).find(|&k| {
@@ -59,12 +59,12 @@ fn outside(n: usize) -> Option<usize> {
     beyond.and_then(|beyond| beyond.checked_sub(1))
 }
 
-/// Probability of at most `k` heads in `n` throws of a coin.
+/// Returns the probability of at most `k` heads in `n` throws of a coin.
 fn at_most(k: usize, n: usize) -> f64 {
     (0..=k).map(|k| share(k, n)).sum()
 }
 
-/// Probability of `k` heads in `n` throws.
+/// Returns the probability of `k` heads in `n` throws.
 fn share(k: usize, n: usize) -> f64 {
     if n < 50 {
         let choose = (0..k).fold(1.0, |choose, k| choose * (n - k) as f64 / (k + 1) as f64);

@@ -12,25 +12,25 @@ use crate::{
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum ExperimentError {
-    /// No geometry or course.
+    /// There is no geometry or course.
     NoSeeds,
-    /// Geometries or courses beyond the last number.
+    /// The last geometry or course would be beyond the largest number.
     Numbers {
         /// The first number.
         first: u64,
         /// The number of geometries or courses.
         seeds: u64,
     },
-    /// No method.
+    /// There is no method.
     NoMethods,
-    /// Two methods of one name.
+    /// Two methods have the same name.
     Twice {
         /// The name.
         name: String,
     },
-    /// A world of the experiment.
+    /// A world of the experiment is invalid.
     World(WorldError),
-    /// A simulation of the experiment.
+    /// A simulation of the experiment failed.
     Simulation(SimulationError),
     /// The caller asked to stop.
     Stopped,

@@ -188,7 +188,7 @@ fn start(to_here: Vector, to_there: Vector, radius_m: f64) -> Vector {
     if length > LAST * (near_here + near_there) { between / length } else { perpendicular(to_here / far_here) }
 }
 
-/// Newton's method for both normals; `None` if it does not converge.
+/// Applies Newton's method to both normals; `None` if it does not converge.
 fn both_at_once(
     source: Point,
     receiver: Point,
@@ -231,20 +231,20 @@ impl Balance {
         Self { along: [normal.dot(&back), normal.dot(&on)], across: [cross(normal, back), cross(normal, on)] }
     }
 
-    /// The angle of one leg minus that of the other, 0 in balance; `None` if it is not small.
+    /// Returns the angle of one leg minus that of the other, 0 in balance; `None` if it is not small.
     fn excess(&self) -> Option<f64> {
         let sin = self.across[0] * self.along[1] + self.along[0] * self.across[1];
         let cos = self.along[0] * self.along[1] - self.across[0] * self.across[1];
         (cos > 0.0).then(|| arc_tangent(sin / cos))
     }
 
-    /// Derivative of [`excess`](Self::excess) by the angle of the normal.
+    /// Returns the derivative of [`excess`](Self::excess) by the angle of the normal.
     fn slope(&self, back: Vector, on: Vector, radius_m: f64) -> f64 {
         -2.0 - radius_m * (self.along[0] / back.norm_squared() + self.along[1] / on.norm_squared())
     }
 }
 
-/// The arc tangent of a small number, to its sixth power.
+/// Returns the arc tangent of a small number, to its sixth power.
 fn arc_tangent(tangent: f64) -> f64 {
     let square = tangent * tangent;
     tangent * (15.0 + 4.0 * square) / (15.0 + 9.0 * square)
@@ -327,7 +327,7 @@ mod tests {
         assert!(settled > 15_000 && worst < 1e-13, "{settled} {worst}");
     }
 
-    /// The normal with equal angles by bisection of the angle between the directions to both points.
+    /// Returns the normal with equal angles by bisection of the angle between the directions to both points.
     fn bisected(source: Point, receiver: Point, centre: Point, radius_m: f64) -> Vector {
         let [to_source, to_receiver] = [source - centre, receiver - centre];
         let side = if cross(to_source, to_receiver) < 0.0 { -1.0 } else { 1.0 };

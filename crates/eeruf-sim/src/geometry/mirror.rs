@@ -14,13 +14,13 @@ pub(crate) struct Mirror {
 }
 
 impl Mirror {
-    /// The mirror along the line through two different points; its normal is on the left of `from` to `to`.
+    /// Makes the mirror along the line through two different points; its normal is on the left of `from` to `to`.
     pub(crate) fn through(from: Point, to: Point, reflection: f64) -> Self {
         let along = (to - from).normalize();
         Self { on: from, normal: Vector::new(-along.y, along.x), turn: 2.0 * libm::atan2(along.y, along.x), reflection }
     }
 
-    /// Signed distance, positive on the left.
+    /// Returns the signed distance of a point, positive on the left.
     #[inline(always)]
     pub(crate) fn distance(&self, point: Point) -> f64 {
         (point - self.on).dot(&self.normal)
@@ -38,7 +38,7 @@ impl Mirror {
         direction - self.normal * (2.0 * direction.dot(&self.normal))
     }
 
-    /// Cosine of the angle of incidence of a unit direction.
+    /// Returns the cosine of the angle of incidence of a unit direction.
     pub(crate) fn cos_incidence(&self, direction: Vector) -> f64 {
         direction.dot(&self.normal).abs()
     }

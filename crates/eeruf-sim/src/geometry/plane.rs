@@ -23,13 +23,13 @@ pub const TOUCH_M: f64 = 1e-9;
 /// directions on the limit from real misses.
 pub(crate) const SAME_DIRECTION: f64 = 1e-12;
 
-/// Twice the signed area spanned by two vectors: positive when `b` points to the left of `a`.
+/// Returns twice the signed area spanned by two vectors: positive when `b` points to the left of `a`.
 #[inline(always)]
 pub(crate) fn cross(a: Vector, b: Vector) -> f64 {
     a.x * b.y - a.y * b.x
 }
 
-/// The opposite of a direction in (-pi, pi], in the same range.
+/// Returns the opposite of a direction in (-pi, pi], in the same range.
 #[inline]
 pub(crate) fn opposite(angle_rad: f64) -> f64 {
     use core::f64::consts::PI;
@@ -48,7 +48,7 @@ pub struct Moment {
 }
 
 impl Moment {
-    /// The velocity in m/s of a point that the robot carries at `offset` from its middle, in the scene's frame.
+    /// Returns the velocity in m/s of a point that the robot carries at `offset` from its middle, in the scene's frame.
     pub fn velocity_at(&self, offset: Vector) -> Vector {
         self.velocity + Vector::new(-offset.y, offset.x) * self.turn_rad_s
     }

@@ -53,12 +53,12 @@ impl OccupancyGrid {
         Ok(Self { width, height, occupied, free, cell_m: head.resolution_m, origin: head.origin })
     }
 
-    /// Number of columns and rows.
+    /// Returns the number of columns and rows.
     pub fn size(&self) -> [usize; 2] {
         [self.width, self.height]
     }
 
-    /// The width of a cell in metres.
+    /// Returns the width of a cell in metres.
     pub fn cell_m(&self) -> f64 {
         self.cell_m
     }
@@ -69,7 +69,7 @@ impl OccupancyGrid {
         column < self.width && row < self.height && self.occupied[row * self.width + column]
     }
 
-    /// The middles of all cells that are known to be free, in metres.
+    /// Returns the middles of all cells that are known to be free, in metres.
     pub fn free_m(&self) -> Vec<[f64; 2]> {
         let cells = self.free.iter().enumerate().filter(|(_, free)| **free);
         cells.map(|(cell, _)| self.place([cell % self.width, cell / self.width].map(|at| at as f64 + 0.5))).collect()
@@ -97,7 +97,7 @@ impl OccupancyGrid {
         })
     }
 
-    /// The direction of the grid's rows, in radians.
+    /// Returns the direction of the grid's rows, in radians.
     pub fn heading_rad(&self) -> f64 {
         self.origin[2]
     }

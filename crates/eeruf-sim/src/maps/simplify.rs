@@ -99,7 +99,7 @@ fn square(a: Corner, b: Corner) -> i64 {
     (a[0] - b[0]).pow(2) + (a[1] - b[1]).pow(2)
 }
 
-/// Distance of a corner from a line between two corners.
+/// Returns the distance of a corner from a line between two corners.
 pub(super) fn off(corner: Corner, from: Corner, to: Corner) -> f64 {
     let [dx, dy] = [to[0] - from[0], to[1] - from[1]].map(|way| way as f64);
     let [x, y] = [corner[0] - from[0], corner[1] - from[1]].map(|way| way as f64);
@@ -163,7 +163,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// Distance of a point from the nearest of some lines.
+    /// Returns the distance of a point from the nearest of some lines.
     fn off_lines(point: [f64; 2], corners: &[Corner]) -> f64 {
         let lines = corners.iter().zip(corners.iter().cycle().skip(1));
         let each = lines.map(|(a, b)| {
@@ -175,7 +175,7 @@ mod tests {
         each.fold(f64::INFINITY, f64::min)
     }
 
-    /// Points along closed lines.
+    /// Returns points along closed lines.
     fn along(corners: &[Corner]) -> impl Iterator<Item = [f64; 2]> + '_ {
         let lines = corners.iter().zip(corners.iter().cycle().skip(1));
         lines.flat_map(|(a, b)| {

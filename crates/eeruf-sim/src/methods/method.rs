@@ -107,7 +107,7 @@ impl Method {
         matches!(self.row().judge, AsSketched)
     }
 
-    /// The methods compared by default: all except sketches and those [on demand](Self::is_on_demand).
+    /// Returns the methods compared by default: all except sketches and those [on demand](Self::is_on_demand).
     pub fn usual() -> impl Iterator<Item = Self> {
         Self::ALL.into_iter().filter(|method| !method.is_sketch() && !method.is_on_demand())
     }
@@ -122,7 +122,7 @@ impl Method {
         self.row().judge
     }
 
-    /// Number of echoes of a firing that a sensor reports.
+    /// Returns the number of echoes of a firing that a sensor reports.
     pub(crate) const fn echoes(self) -> usize {
         self.row().echoes
     }

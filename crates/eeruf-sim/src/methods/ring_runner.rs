@@ -22,7 +22,7 @@ use crate::world::{AnySchedule, Random, Robot};
 
 /// A ring of any kind.
 pub(crate) trait RingRunner: Send {
-    /// The ring's next event, if any; `expected_change_us` gives the expected change of a sensor's good reading.
+    /// Returns the ring's next event, if any. `expected_change_us` gives the expected change of a good reading.
     fn poll(&mut self, now: Instant, expected_change_us: &dyn Fn(u8) -> i32) -> Option<RingEvent>;
     /// Returns the time of the next poll.
     fn next_deadline(&self) -> Instant;

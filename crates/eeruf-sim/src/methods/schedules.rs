@@ -106,7 +106,7 @@ pub fn table_i_d_for(sensors: usize, period: Micros, neighbours: u8) -> Result<A
     AnySchedule::from_slices(period, &lags(sensors, period, neighbours), [&vec![widest; sensors], &waits])
 }
 
-/// The widest range of waits that leaves every firing in its period: 24 ms of 100 ms with four neighbours.
+/// Returns the widest range of waits that leaves every firing in its period: 24 ms of 100 ms with four neighbours.
 fn widest_wait(period: Micros, neighbours: u8) -> Micros {
     Micros::new((u64::from(period.as_micros()) * 96 / (100 * u64::from(neighbours.max(1)))) as u32)
 }

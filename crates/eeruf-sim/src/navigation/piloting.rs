@@ -20,7 +20,7 @@ impl Piloting {
     pub const SHARED: Self = tuned(3, 0.03, 13, 0.7, 360.0, 3.0, 2.75, true);
 }
 
-/// The published method with the parameters that a search varies, in the order of a table's columns.
+/// Makes the published method with the parameters that a search varies, in the order of a table's columns.
 #[expect(clippy::too_many_arguments, reason = "a row of a table")]
 pub(crate) const fn tuned(
     smoothing: usize,

@@ -168,7 +168,7 @@ impl Readings {
         emitted_s.try_reserve(more)
     }
 
-    /// Number of further readings that fit.
+    /// Returns the number of further readings that fit.
     pub(crate) fn room(&self) -> usize {
         // Columns of equal element types grow alike, and the widest grow last.
         self.emitted_s.capacity() - self.emitted_s.len()
@@ -210,7 +210,7 @@ impl Readings {
         paths.clear();
     }
 
-    /// Number of readings.
+    /// Returns the number of readings.
     pub fn len(&self) -> usize {
         self.robot.len()
     }
@@ -220,7 +220,7 @@ impl Readings {
         self.robot.is_empty()
     }
 
-    /// The sensor of a reading.
+    /// Returns the sensor of a reading.
     pub fn id(&self, reading: usize) -> SensorId {
         SensorId { robot: self.robot[reading], sensor: self.sensor[reading] }
     }
@@ -247,7 +247,7 @@ impl Readings {
         !is_off(self.earliest_us[reading], self.reference_us[reading], tolerance_us)
     }
 
-    /// The path of a reading.
+    /// Returns the path of a reading.
     pub fn path_of(&self, reading: usize) -> Option<&HeardPath> {
         self.paths.get(self.path[reading] as usize)
     }

@@ -148,7 +148,7 @@ impl Body {
         corners.iter().map(|corner| pose * corner).map(|corner| [corner.x, corner.y]).collect()
     }
 
-    /// Number of walls around the body; 0 for a disc.
+    /// Returns the number of walls around the body; 0 for a disc.
     pub(crate) fn sides(&self) -> usize {
         match self {
             Self::Disc(_) => 0,

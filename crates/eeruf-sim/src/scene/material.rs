@@ -24,7 +24,7 @@ impl Material {
         Self { reflection, roughness_m: 0.0 }
     }
 
-    /// Amplitude of the coherent reflection at one bounce:
+    /// Returns the amplitude of the coherent reflection at one bounce:
     ///
     /// ```text
     /// R exp(-2 (k sigma cos theta)^2)

@@ -132,22 +132,22 @@ impl Scene {
         Ok(Self { room, ..self })
     }
 
-    /// Floor and ceiling; `None` if the scene is flat.
+    /// Returns floor and ceiling; `None` if the scene is flat.
     pub fn room(&self) -> Option<&Room> {
         self.room.as_ref()
     }
 
-    /// The walls, in the order given.
+    /// Returns the walls, in the order given.
     pub fn walls(&self) -> &[Wall] {
         &self.built.walls
     }
 
-    /// The poles, in the order given.
+    /// Returns the poles, in the order given.
     pub fn poles(&self) -> &[Pole] {
         &self.poles
     }
 
-    /// The free ends of walls and the corners that jut out. Sound bends around them with
+    /// Returns the free ends of walls and the corners that jut out. Sound bends around them with
     /// [`Physics::edges`](crate::Physics::edges). They include edges of solid regions, seen from within.
     pub fn edges(&self) -> &[Edge] {
         &self.built.edges
@@ -157,12 +157,12 @@ impl Scene {
         &self.built.mesh
     }
 
-    /// The mirrors of the walls.
+    /// Returns the mirrors of the walls.
     pub(crate) fn mirrors(&self) -> &[Mirror] {
         &self.built.mirrors
     }
 
-    /// The boxes around the walls.
+    /// Returns the boxes around the walls.
     pub(crate) fn wall_boxes(&self) -> &Bvh {
         &self.built.boxes
     }
@@ -217,7 +217,7 @@ impl Scene {
         })
     }
 
-    /// The air.
+    /// Returns the air.
     pub fn air(&self) -> Air {
         self.air
     }

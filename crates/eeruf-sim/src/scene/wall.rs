@@ -66,7 +66,7 @@ impl Wall {
         self.faces == Faces::Open
     }
 
-    /// Length in metres.
+    /// Returns the length in metres.
     pub fn length_m(&self) -> f64 {
         (self.to - self.from).norm()
     }

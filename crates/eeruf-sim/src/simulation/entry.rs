@@ -87,12 +87,12 @@ impl Entry {
         Self { own: Some(own), ..self }
     }
 
-    /// The name of the entry in results.
+    /// Returns the name of the entry in results.
     pub fn name(&self) -> &str {
         &self.name
     }
 
-    /// The method on which this one is based.
+    /// Returns the method on which this one is based.
     pub const fn method(&self) -> Method {
         self.method
     }

@@ -117,7 +117,7 @@ pub enum SimulationError {
 }
 
 impl SimulationError {
-    /// The error of a ring that cannot change its schedule.
+    /// Returns the error of a ring that cannot change its schedule.
     pub(super) fn change(robot: usize, method: Method, error: ChangeError) -> Self {
         match error {
             ChangeError::Fixed => Self::FixedSchedule { robot, method },
@@ -125,7 +125,7 @@ impl SimulationError {
         }
     }
 
-    /// The error of a ring that cannot be started.
+    /// Returns the error of a ring that cannot be started.
     pub(super) fn start(robot: usize, method: Method, error: StartError) -> Self {
         match error {
             StartError::Ring(error) => Self::Ring { robot, method, error },
@@ -135,7 +135,7 @@ impl SimulationError {
         }
     }
 
-    /// The error of paths that cannot be found at a time in true nanoseconds.
+    /// Returns the error of paths that cannot be found at a time in true nanoseconds.
     pub(super) fn paths(at: u64, error: PathsError) -> Self {
         if error == PathsError::Stopped {
             return Self::Stopped;

@@ -365,12 +365,12 @@ impl Simulation {
         Ok(self.events.kinematics().moment(robot, then as u64))
     }
 
-    /// The simulated world, in its state at the beginning.
+    /// Returns the simulated world, in its state at the beginning.
     pub fn world(&self) -> &Arc<World> {
         &self.world
     }
 
-    /// The world with its present scene, and the time in seconds since which firings have used it; see
+    /// Returns the world with its present scene, and the time in seconds since which firings have used it; see
     /// [`change_scene`](Self::change_scene).
     pub fn world_now(&self) -> (&Arc<World>, f64) {
         (&self.place.0, self.place.1 as f64 * 1e-9)

@@ -308,7 +308,7 @@ impl CrosstalkMatrix {
         (self.emitters, self.sensors) = (sensors, sensors);
     }
 
-    /// Number of sensors of the ring.
+    /// Returns the number of sensors of the ring.
     pub fn sensors(&self) -> usize {
         self.sensors
     }
@@ -322,7 +322,7 @@ impl CrosstalkMatrix {
         &self.paths[self.starts[pair] as usize..self.starts[pair + 1] as usize]
     }
 
-    /// All paths, by emitter, receiver and length.
+    /// Returns all paths, by emitter, receiver and length.
     pub fn paths(&self) -> &[CriticalPath] {
         &self.paths
     }

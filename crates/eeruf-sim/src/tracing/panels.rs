@@ -60,7 +60,7 @@ impl Turn {
         panel_share(detours, false)
     }
 
-    /// Detour of the path over an end of the wall, in metres.
+    /// Returns the detour of the path over an end of the wall, in metres.
     fn detour_m(&self, end: Point, way: Vector) -> f64 {
         let [before_m, after_m] = self.whole_m;
         let off = end - self.at;

@@ -25,7 +25,7 @@ pub struct Paths {
 }
 
 impl Paths {
-    /// Number of paths.
+    /// Returns the number of paths.
     pub fn len(&self) -> usize {
         self.length_m.len()
     }
@@ -35,14 +35,14 @@ impl Paths {
         self.length_m.is_empty()
     }
 
-    /// The bounces of a path from source to receiver; empty for a path that does not exist.
+    /// Returns the bounces of a path from source to receiver; empty for a path that does not exist.
     pub fn bounces(&self, path: usize) -> &[Bounce] {
         let end_of = |path: usize| self.ends.get(path).map_or(0, |end| *end as usize);
         let start = if path == 0 { 0 } else { end_of(path - 1) };
         self.bounces.get(start..end_of(path)).unwrap_or(&[])
     }
 
-    /// The elevations of a path's departure and arrival in radians, upwards positive; 0 in a flat scene.
+    /// Returns the elevations of a path's departure and arrival in radians, upwards positive; 0 in a flat scene.
     pub fn elevations_rad(&self, path: usize) -> [f64; 2] {
         self.elevations_rad.get(path).copied().unwrap_or_default()
     }
@@ -55,7 +55,7 @@ impl Paths {
         self.arrival_rad.push(arrival_rad);
     }
 
-    /// The indices of one receiver's paths.
+    /// Returns the indices of one receiver's paths.
     pub fn of(&self, receiver: u32) -> core::ops::Range<usize> {
         self.receiver.partition_point(|&r| r < receiver)..self.receiver.partition_point(|&r| r <= receiver)
     }

@@ -123,7 +123,7 @@ impl Tracer {
         self.narrow_panels = physics.narrow_panels;
     }
 
-    /// Largest factor by which a path may be louder than with endless walls.
+    /// Returns the largest factor by which a path may be louder than with endless walls.
     pub(crate) fn loudest(&self) -> f64 {
         if self.narrow_panels { LOUDEST_PANEL } else { 1.0 }
     }

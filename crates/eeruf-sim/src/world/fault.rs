@@ -148,7 +148,7 @@ impl FaultKind {
         "door",
     ];
 
-    /// The name in files.
+    /// Returns the name in files.
     pub fn name(&self) -> &'static str {
         let index = match self {
             Self::Lost { .. } => 0,

@@ -152,17 +152,17 @@ impl World {
         Ok(Self { faults, ..self })
     }
 
-    /// The faults.
+    /// Returns the faults.
     pub fn faults(&self) -> &[Fault] {
         &self.faults
     }
 
-    /// Walls, poles and air.
+    /// Returns walls, poles and air.
     pub fn scene(&self) -> &Scene {
         &self.scene
     }
 
-    /// The robots, at least one.
+    /// Returns the robots, at least one.
     pub fn robots(&self) -> &[Robot] {
         &self.robots
     }
@@ -189,17 +189,17 @@ impl World {
         self.noise
     }
 
-    /// Largest number of bounces of sound.
+    /// Returns the largest number of bounces of sound.
     pub fn max_order(&self) -> u32 {
         self.max_order
     }
 
-    /// Largest number of bounces of sound that meets a pole.
+    /// Returns the largest number of bounces of sound that meets a pole.
     pub fn pole_order(&self) -> u32 {
         self.pole_order.min(self.max_order)
     }
 
-    /// Seed of all random values.
+    /// Returns the seed of all random values.
     pub fn seed(&self) -> u64 {
         self.seed
     }

@@ -4,7 +4,7 @@ use std::path::Path;
 
 use eeruf_sim::*;
 
-/// One of the two field cases: two modules 10 cm apart before a wall.
+/// Reads one of the two field cases: two modules 10 cm apart before a wall.
 fn field_case(name: &str) -> World {
     World::from_toml(&Path::new(env!("CARGO_MANIFEST_DIR")).join("../../tests/data/field-cases").join(name)).unwrap()
 }

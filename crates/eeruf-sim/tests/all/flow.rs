@@ -51,7 +51,7 @@ fn run(way: &RoomWay, kinds: &[RoomKind], rooms: u64, (speed_m_s, turn_deg_s): M
     FlowFigures { right: mean(|it| it.right), phantom: mean(|it| it.phantom), echoes: mean(|it| it.echoes) }
 }
 
-/// Rooms without another robot.
+/// Returns the kinds of rooms without another robot.
 fn alone() -> Vec<RoomKind> {
     RoomKind::ALL.into_iter().filter(|&kind| kind != RoomKind::Meeting).collect()
 }

@@ -108,7 +108,7 @@ fn assert_agree(mut ours: Sequences, mut expected: Sequences, setting: impl Fn()
     ours.len()
 }
 
-/// All paths of a receiver as (sequence, length); `None` if one of them is doubtful.
+/// Returns all paths of a receiver as (sequence, length); `None` if one of them is doubtful.
 fn image_sources(scene: &Scene, source: Point, receiver: Point, max_order: usize) -> Option<Sequences> {
     let walls = scene.walls();
     let mut found = Vec::new();

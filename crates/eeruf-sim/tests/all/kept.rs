@@ -18,7 +18,7 @@ fn room_with_poles() -> Scene {
     Scene::new(room(), poles.into(), Air::default()).unwrap()
 }
 
-/// Digest of a list of whole numbers (FNV-1a).
+/// Computes a digest of a list of whole numbers (FNV-1a).
 fn digest(numbers: impl Iterator<Item = u64>) -> u64 {
     numbers
         .flat_map(u64::to_le_bytes)
@@ -113,7 +113,7 @@ fn exactly(readings: &Readings) -> (usize, u64) {
     (readings.len(), digest(numbers))
 }
 
-/// A corner of a hall: pillars, a thin and a thick pole, a panel, a door.
+/// Makes a corner of a hall: pillars, a thin and a thick pole, a panel, a door.
 fn furnished() -> Scene {
     let corners =
         [[0.0, 0.0], [9.0, 0.0], [9.0, 6.0], [5.0, 6.0], [5.0, 7.5], [3.0, 7.5], [3.0, 6.0], [0.0, 6.0], [0.0, 0.0]];
@@ -180,7 +180,7 @@ fn still_readings_of_every_gain_keep_every_bit() {
     );
 }
 
-/// Two robots in a furnished hall, the first one moving, under `default`.
+/// Simulates two robots in a furnished hall, the first one moving, under `default`.
 fn two_robots(body: Option<Body>) -> Readings {
     let motion = Motion::Constant { velocity: Vector::new(0.3, -0.1), turn_rad_s: 0.4 };
     let module = Transducer { gain: GainProfile::Linear, ..Transducer::POLAROID_6500 };

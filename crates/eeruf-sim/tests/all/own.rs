@@ -5,7 +5,7 @@ use std::sync::Arc;
 use eeruf_core::{EchoFilter, MAX_SENSORS, Micros, Phase, ReadingKind};
 use eeruf_sim::*;
 
-/// An alcove in which sensors hear each other, and a robot in it.
+/// Makes an alcove in which sensors hear each other, and a robot in it.
 fn alcove(robots: Vec<Robot>) -> Arc<World> {
     let walls = [[1.1, -0.9], [1.1, 0.9], [-0.8, 0.9], [-0.8, -0.9], [1.1, -0.9]];
     let scene = Scene::new(Wall::polyline(&walls).collect(), vec![], Air::default()).unwrap();
@@ -23,7 +23,7 @@ fn open(world: &Arc<World>, method: Method, own: Own) -> Result<Simulation, Simu
 /// Sensor, period, phase, kind, cause, numbers by their bits, and path of a reading.
 type Row = (SensorId, u32, u8, ReadingKind, Cause, [u64; 5], Option<HeardPath>);
 
-/// The columns of all readings.
+/// Returns the columns of all readings.
 fn columns(readings: &Readings) -> Vec<Row> {
     let row = |k: usize| {
         let times = [&readings.fired_s, &readings.t_echo_us, &readings.earliest_us, &readings.emitted_s];

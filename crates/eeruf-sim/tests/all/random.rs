@@ -2,7 +2,7 @@
 
 use eeruf_sim::{Air, Faces, Point, Random, Scene, Wall};
 
-/// Draws for tests besides numbers in a range.
+/// Random draws for tests, other than numbers in a range.
 pub(crate) trait Draw {
     /// Draws a whole number below `count`.
     fn below(&mut self, count: u64) -> u64;

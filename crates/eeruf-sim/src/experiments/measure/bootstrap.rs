@@ -89,7 +89,7 @@ impl Latencies {
         self.0.iter().filter(|of| of.0.is_infinite()).count() as f64 / self.0.len().max(1) as f64
     }
 
-    /// Number of things.
+    /// Returns the number of things.
     pub(super) fn len(&self) -> usize {
         self.0.len()
     }

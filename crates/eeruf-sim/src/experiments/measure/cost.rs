@@ -27,7 +27,7 @@ pub struct Point {
 /// The setting at which a family is used under a condition, chosen in rooms that reports do not use.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Operating {
-    /// The least t95 with no more false stops than asked for.
+    /// The setting of least t95 with no more false stops than asked for.
     At(Point),
     /// No setting has few enough false stops; this setting has the fewest.
     None(Point),

@@ -70,7 +70,7 @@ impl Condition {
         Self { moving: Moving::Turning, others: true },
     ];
 
-    /// The name in tables and in JSON.
+    /// Returns the name in tables and in JSON.
     pub const fn as_str(self) -> &'static str {
         match (self.moving, self.others) {
             (Moving::Standing, false) => "standing",

@@ -50,15 +50,15 @@ pub struct RoomGroup {
 }
 
 impl RoomGroup {
-    /// Rooms of one kind with consecutive numbers, for a robot that needs a circle of this radius. Ways are chosen on
-    /// numbers below 2,000, and reported from [`FIRST`](crate::experiments::FIRST) on.
+    /// Makes rooms of one kind with consecutive numbers, for a robot that needs a circle of this radius. Ways are
+    /// chosen on numbers below 2,000, and reported from [`FIRST`](crate::experiments::FIRST) on.
     pub fn of_kind(kind: RoomKind, numbers: core::ops::Range<u64>, radius_m: f64) -> Self {
         let rooms = numbers.map(|number| RoomPlan::random(kind, number, radius_m)).collect();
         Self { name: kind.to_string(), rooms }
     }
 
-    /// The room of a world, for a ring in the place of the world's first robot, with as much free way; `None` for a
-    /// world without a robot.
+    /// Makes the room of a world, for a ring in the place of the world's first robot and with its free way; `None` for
+    /// a world without a robot.
     pub fn of_world(name: String, number: u64, world: &World) -> Option<Self> {
         let robot = world.robots().first()?;
         let way_m = robot.motion.at(&robot.pose, DRIVING_S).pose.translation.vector - robot.pose.translation.vector;
@@ -67,7 +67,7 @@ impl RoomGroup {
         Some(Self { name, rooms: vec![plan] })
     }
 
-    /// Places in the known free space of a map, drawn like the rooms of [`of_kind`](Self::of_kind): half of the robots
+    /// Draws places in the known free space of a map, like the rooms of [`of_kind`](Self::of_kind): half of the robots
     /// stand square to the map.
     ///
     /// # Errors
@@ -145,7 +145,7 @@ pub struct Judgement {
 }
 
 impl Judgement {
-    /// The recommended way.
+    /// Returns the recommended way.
     pub fn best(&self) -> Option<&JudgedWay> {
         self.recommended.and_then(|index| self.ways.get(index))
     }
@@ -304,7 +304,7 @@ fn blind_90(runs: &[Run]) -> [f64; 2] {
 /// Number added to right echoes a second before division, so that ways that hear none are equal.
 const NO_ECHOES: f64 = 0.1;
 
-/// The 95 % interval of the ratio of right echoes, from its spread among rooms of a kind.
+/// Returns the 95 % interval of the ratio of right echoes, from its spread among rooms of a kind.
 fn times_95(own: &[Run], base: &[Run], sizes: &[usize]) -> Option<[f64; 2]> {
     let (mut own, mut base) = (own, base);
     let (mut sum, mut variance, mut measured) = (0.0, 0.0, false);
@@ -331,7 +331,7 @@ fn times_95(own: &[Run], base: &[Run], sizes: &[usize]) -> Option<[f64; 2]> {
     measured.then(|| [-reach, reach].map(|reach| libm::exp(sum / kinds + reach)))
 }
 
-/// A room with the robot.
+/// Makes a room with the robot.
 fn world_of(room: &RoomPlan, robot: &Robot, asked: &RoomsOptions) -> Result<World, ExperimentError> {
     let Condition { other_gain, flat } = asked.condition;
     let robot = if other_gain { with_other_gain(robot) } else { robot.clone() };
@@ -357,13 +357,13 @@ const AS_GOOD: f64 = 0.01;
 const WORTH_A_LIBRARY: f64 = 1.2;
 
 impl JudgedWay {
-    /// The share of time in which the belief is right, over all kinds of rooms.
+    /// Returns the share of time in which the belief is right, over all kinds of rooms.
     pub fn belief_right(&self) -> Option<f64> {
         let rooms = self.rooms.as_ref().ok()?;
         Some(rooms.iter().map(|figures| figures.belief.right).sum::<f64>() / rooms.len() as f64)
     }
 
-    /// Ratio of right echoes to those of another way, as the geometric mean over all kinds of rooms.
+    /// Returns the ratio of right echoes to those of another way, as the geometric mean over all kinds of rooms.
     pub fn echoes_against(&self, other: &Self) -> Option<f64> {
         let (Ok(own), Ok(others)) = (&self.rooms, &other.rooms) else { return None };
         let ratio = |(own, other): (&RoomFigures, &RoomFigures)| {
@@ -373,8 +373,8 @@ impl JudgedWay {
         Some(libm::exp(logs / own.len() as f64))
     }
 
-    /// The index of the first group of rooms in which the way is wrong too often, or leaves more sensors blind than one
-    /// by one.
+    /// Returns the index of the first group of rooms in which the way is wrong too often, or leaves more sensors blind
+    /// than one by one.
     pub fn fails_in(&self, one_by_one: &Self, wrong: f64) -> Option<usize> {
         let (Ok(own), Ok(base)) = (&self.rooms, &one_by_one.rooms) else { return None };
         let fails = |own: &RoomFigures, base: &RoomFigures| {

@@ -60,7 +60,7 @@ impl RoomKind {
         Self::Meeting,
     ];
 
-    /// The name in tables, in JSON and in Python.
+    /// Returns the name in tables, in JSON and in Python.
     pub const fn as_str(self) -> &'static str {
         match self {
             Self::Corridor => "corridor",
@@ -169,7 +169,7 @@ struct Draft {
 }
 
 impl Draft {
-    /// The distance from a place to the nearest object, in metres; negative outside.
+    /// Returns the distance from a place to the nearest object, in metres; negative outside.
     fn free_m(&self, place: [f64; 2]) -> f64 {
         let [x, y] = place;
         let walls = (0.5 * self.size[0] - x.abs()).min(0.5 * self.size[1] - y.abs());
@@ -214,7 +214,7 @@ fn longest_way(from: Vector, directions: &[f64], is_free: impl Fn(Vector) -> boo
     longest.unwrap_or((Vector::new(1.0, 0.0), 0.0))
 }
 
-/// Sixteen directions all round.
+/// Returns sixteen directions all round.
 fn directions() -> Vec<f64> {
     (0..16).map(|k| TAU * f64::from(k) / 16.0).collect()
 }
@@ -327,7 +327,7 @@ impl RoomPlan {
         self.moving(robot, speed_m_s.min(self.way_m() / DRIVING_S), 0.0)
     }
 
-    /// The free way ahead of a robot that drives, in metres.
+    /// Returns the free way ahead of a robot that drives, in metres.
     pub(in crate::experiments) fn way_m(&self) -> f64 {
         self.way.1
     }

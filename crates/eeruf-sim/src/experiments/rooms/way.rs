@@ -69,7 +69,7 @@ impl RoomWay {
         matches!(self.method, Method::Sequential | Method::FarGroups | Method::Flow) || self.name == "eeruf"
     }
 
-    /// The name with its meaning, for tables.
+    /// Returns the name with its meaning, for tables.
     pub fn title(&self) -> &'static str {
         match self.name {
             "sequential" => "one by one",

@@ -41,7 +41,7 @@ impl Alcove {
         Self { width_m, depth_m, robot_m, heading_rad: random.between(-most, most) }
     }
 
-    /// The three walls.
+    /// Returns the three walls.
     ///
     /// # Errors
     /// [`SceneError`] for measures that make no walls.
@@ -56,12 +56,12 @@ impl Alcove {
         Self { depth_m: self.depth_m - super::STEP_M, ..self }
     }
 
-    /// The robot.
+    /// Returns the robot.
     pub fn robot(&self) -> Robot {
         self.robot_of(SENSORS)
     }
 
-    /// The robot with a ring of this many sensors.
+    /// Returns the robot with a ring of this many sensors.
     pub fn robot_of(&self, sensors: usize) -> Robot {
         let [x, y] = self.robot_m;
         let pose = Pose::new(Vector::new(x, y), core::f64::consts::FRAC_PI_2 + self.heading_rad);

@@ -73,7 +73,7 @@ pub struct Figures {
 }
 
 impl Figures {
-    /// The figures of one method's runs.
+    /// Returns the figures of one method's runs.
     pub fn of(runs: &[Run]) -> Self {
         let summaries = || runs.iter().map(|run| &run.summary);
         let spread = |value: fn(&Summary) -> Option<f64>| Spread::of(summaries().filter_map(value));

@@ -18,7 +18,7 @@ impl MultiEcho {
     /// The best settings of `cargo lab tune`'s grid, on alcoves below 2,000, by the sum of wrong and lost readings.
     pub const TUNED: Self = Self { consecutive: 2, t_delta: Micros::new(200) };
 
-    /// The robot with these settings.
+    /// Returns the robot with these settings.
     pub(super) fn of(self, robot: Robot) -> Robot {
         let Self { consecutive, t_delta } = self;
         Robot { consecutive, t_delta, ..robot }

@@ -45,7 +45,7 @@ pub struct SetOneOptions {
     pub period: Micros,
     /// The transducers. The default is [`Transducer::POLAROID_6500`].
     pub transducer: Transducer,
-    /// Noise in the alcoves; each has its own number as seed.
+    /// Noise in the alcoves; the number of each alcove is its seed.
     pub noise: Noise,
     /// Settings of [`Method::MultiEcho`].
     pub multi_echo: MultiEcho,

@@ -96,7 +96,7 @@ fn periods(asked: &SetOneOptions) -> u32 {
     asked.readings.div_ceil(asked.sensors.max(1) as u32)
 }
 
-/// An alcove and its robot with a method's settings; the world's seed is the alcove's number.
+/// Makes an alcove and its robot with a method's settings; the world's seed is the alcove's number.
 ///
 /// # Errors
 /// [`WorldError`] for an invalid ring.

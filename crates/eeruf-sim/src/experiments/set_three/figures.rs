@@ -106,7 +106,7 @@ impl Run {
 }
 
 impl Figures {
-    /// The figures of one method's runs.
+    /// Returns the figures of one method's runs.
     pub fn of(runs: &[Run]) -> Self {
         let spread = |value: fn(&Run) -> Option<f64>| Spread::of(runs.iter().filter_map(value));
         Self {

@@ -110,7 +110,7 @@ impl Placing {
         Self { place, arrangement, robots: robots.collect(), room_m }
     }
 
-    /// The four walls.
+    /// Returns the four walls.
     ///
     /// # Errors
     /// [`SceneError`] for measures that make no walls.
@@ -151,7 +151,7 @@ fn meeting(count: usize, random: &mut Random) -> Vec<(Vector, f64)> {
     (0..count).map(each).collect()
 }
 
-/// Random places in the middle of a hall, not too near each other.
+/// Draws random places in the middle of a hall, not too near each other.
 fn scattered(count: usize, random: &mut Random) -> Vec<(Vector, f64)> {
     let mut places: Vec<(Vector, f64)> = Vec::with_capacity(count);
     while places.len() < count {

@@ -38,7 +38,7 @@ pub struct SetThreeOptions {
     pub gain: GainProfile,
 }
 
-/// The methods that Set III compares by default.
+/// Returns the methods that Set III compares by default.
 pub fn usual() -> Vec<Entry> {
     use Method::{Dither, Eeruf, Flow, Sequential, SequentialVotes, Simultaneous};
     Entry::all([Simultaneous, Sequential, SequentialVotes, Dither, Eeruf, Flow])
@@ -187,7 +187,7 @@ pub fn group(names: &[&str], runs: &[Vec<Run>]) -> Vec<Group> {
     all.filter(|group| group.placings > 0).collect()
 }
 
-/// A placing as a world of rings that fire by a method.
+/// Makes a placing as a world of rings that fire by a method.
 ///
 /// # Errors
 /// [`WorldError`] for a placing that cannot be.

@@ -60,7 +60,7 @@ impl Course {
         }
     }
 
-    /// The distance between the two poles nearest to each other.
+    /// Returns the distance between the two poles nearest to each other.
     fn gap_m(&self) -> f64 {
         let pairs =
             self.poles.iter().enumerate().flat_map(|(k, a)| self.poles[..k].iter().map(move |b| (a - b).norm()));
@@ -94,8 +94,8 @@ impl Course {
         false
     }
 
-    /// The lab: its far end and left side are smooth and form the reflective corner. The other two walls are lined with
-    /// furniture and return half of the sound.
+    /// Returns the lab: its far end and left side are smooth and form the reflective corner. The other two walls are
+    /// lined with furniture and return half of the sound.
     ///
     /// # Errors
     /// [`WorldError`] if the poles do not make a valid scene.
@@ -108,13 +108,13 @@ impl Course {
         Ok(Scene::new(walls.collect(), poles.collect(), Air::default())?)
     }
 
-    /// The ring of Set I on the platform's middle, at the start.
+    /// Makes the ring of Set I on the platform's middle, at the start.
     pub fn robot(&self) -> Robot {
         let pose = Pose::new(Vector::from(START_M), 0.0);
         Robot::ring(pose, SENSORS, SPACING_DEG.to_radians(), RADIUS_M, Transducer::POLAROID_6500)
     }
 
-    /// The platform with its square body; the sensors of its ring are on its edge, along their axes.
+    /// Makes the platform with its square body; the sensors of its ring are on its edge, along their axes.
     pub fn robot_with_body(&self, labmate: &LabMate) -> Robot {
         let mut robot = Robot { body: Some(labmate.body()), ..self.robot() };
         for sensor in &mut robot.sensors {
@@ -126,8 +126,8 @@ impl Course {
         robot
     }
 
-    /// The other robot: a standing ring of 24 sensors all around that fires 24 times in 80 ms, with a clock 40 ppm fast
-    /// and a random start.
+    /// Makes the other robot: a standing ring of 24 sensors all around that fires 24 times in 80 ms, with a clock 40
+    /// ppm fast and a random start.
     pub fn second_robot(&self, at: Point) -> Robot {
         let mut random = Random::new(self.number).of(3);
         let pose = Pose::new(at.coords, random.between(-3.1, 3.1));

@@ -39,7 +39,7 @@ pub struct Figures {
 }
 
 impl Figures {
-    /// The figures of one method's runs.
+    /// Returns the figures of one method's runs.
     pub fn of(runs: &[Run]) -> Self {
         let ended = |ending| runs.iter().filter(|run| run.ending == ending).count();
         let sum = |value: fn(&Run) -> f64| runs.iter().map(value).sum::<f64>();

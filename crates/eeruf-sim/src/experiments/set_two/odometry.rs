@@ -81,7 +81,7 @@ mod tests {
     use super::*;
     use crate::navigation::LabMate;
 
-    /// The odometry's error after eight metres in a bow.
+    /// Returns the odometry's error after eight metres along a curve.
     fn off_m(noise: OdometryNoise, course: u64) -> f64 {
         let labmate = LabMate::default();
         let mut state = Driven::at_rest(Pose::identity());

@@ -52,7 +52,7 @@ pub struct SetTwoOptions {
 }
 
 impl SetTwoOptions {
-    /// The robot of a course under these options.
+    /// Returns the robot of a course under these options.
     #[must_use]
     pub fn robot(&self, robot: Robot) -> Robot {
         let transducer = Transducer { gain: self.gain, ..robot.transducer };

@@ -43,7 +43,7 @@ impl Pilots {
         }
     }
 
-    /// The pilot of a method.
+    /// Returns the pilot of a method.
     pub fn of(&self, method: Method) -> Piloting {
         let published = Piloting { vfh: Vfh::default(), turn_gain: 3.0, range_m: 2.0, growth: false };
         match *self {

@@ -59,12 +59,12 @@ impl Himm {
         grid
     }
 
-    /// The width of a cell in metres.
+    /// Returns the width of a cell in metres.
     pub fn cell_m(&self) -> f64 {
         self.cell_m
     }
 
-    /// Number of cells on a side of the window.
+    /// Returns the number of cells on a side of the window.
     pub fn side(&self) -> usize {
         self.side as usize
     }
@@ -115,14 +115,14 @@ impl Himm {
         }
     }
 
-    /// The certainty value of the cell that contains a point; `None` outside the window.
+    /// Returns the certainty value of the cell that contains a point; `None` outside the window.
     pub fn value(&self, point: Point) -> Option<u8> {
         let cell = self.cell_of(point);
         self.holds(cell).then(|| self.values[self.index(cell)])
     }
 
-    /// The cells that are not empty, with their middles, in a square of `side` cells around a point, or in the whole
-    /// window if that is smaller.
+    /// Returns the cells that are not empty, with their middles, in a square of `side` cells around a point, or in the
+    /// whole window if that is smaller.
     pub fn occupied(&self, around: Point, side: usize) -> impl Iterator<Item = (Point, u8)> + '_ {
         let middle = self.cell_of(around);
         let half = (side.clamp(1, 8192) as i64) / 2;

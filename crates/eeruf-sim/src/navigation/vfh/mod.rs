@@ -214,7 +214,7 @@ impl Vfh {
         (self.speed(&smoothed, heading, turn_rad_s) * libm::cos(error).max(0.0), turn)
     }
 
-    /// The direction in which the robot enters a valley.
+    /// Returns the direction in which the robot enters a valley.
     fn through(&self, valley: &Valley, target: f64) -> f64 {
         if valley.sectors == SECTORS {
             return target;
@@ -228,7 +228,7 @@ impl Vfh {
     }
 }
 
-/// Angle of a direction outside a valley, in radians; 0 inside.
+/// Returns the angle of a direction outside a valley, in radians; 0 inside.
 fn off(valley: &Valley, direction_rad: f64) -> f64 {
     let half = 0.5 * valley.sectors as f64 * SECTOR_RAD;
     let middle = valley.first as f64 * SECTOR_RAD + half;

@@ -12,7 +12,7 @@ const VFH: Vfh = Vfh {
     turn_max_rad_s: 2.0,
 };
 
-/// A grid with certain cells every 10 cm along lines.
+/// Makes a grid with certain cells every 10 cm along lines.
 fn walls(lines: &[([f64; 2], [f64; 2])]) -> Himm {
     let mut grid = Himm::new(201, 0.1);
     for &(from, to) in lines {

@@ -7,7 +7,7 @@ use crate::scene::error::SceneError;
 use crate::scene::wall::Wall;
 use parry2d_f64::{bounding_volume::Aabb, partitioning::Bvh};
 
-/// The box around a wall.
+/// Returns the box around a wall.
 pub(crate) fn wall_box(wall: &Wall) -> Aabb {
     let (low, high) = (wall.from.inf(&wall.to), wall.from.sup(&wall.to));
     Aabb::new(low.coords.into(), high.coords.into())

@@ -89,12 +89,12 @@ pub(crate) struct Mesh {
 }
 
 impl Mesh {
-    /// Number of triangles.
+    /// Returns the number of triangles.
     pub(crate) fn len(&self) -> usize {
         self.gates.len() / 3
     }
 
-    /// The three sides of a triangle seen from within.
+    /// Returns the three sides of a triangle seen from within.
     pub(crate) fn sides(&self, triangle: u32) -> [Side; 3] {
         let base = 3 * triangle as usize;
         core::array::from_fn(|k| {

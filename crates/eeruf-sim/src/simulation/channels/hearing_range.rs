@@ -34,7 +34,7 @@ impl HearingRange {
         Self { sending: *sending, hearing: *hearing, floor, faintest, longest_m }
     }
 
-    /// Frequency of the sending transducer, in Hz.
+    /// Returns the frequency of the sending transducer, in Hz.
     pub(super) fn frequency_hz(&self) -> f64 {
         self.sending.frequency_hz
     }

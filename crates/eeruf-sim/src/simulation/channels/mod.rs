@@ -189,7 +189,7 @@ impl Channels {
         self.shared = Some(shared);
     }
 
-    /// Every path met so far, by its number.
+    /// Returns every path met so far, by its number.
     pub(crate) fn paths(&self) -> &[HeardPath] {
         self.paths.paths()
     }

@@ -58,7 +58,7 @@ impl PathNumbers {
         self.keys[number as usize]
     }
 
-    /// The paths, by their numbers.
+    /// Returns the paths, by their numbers.
     pub(super) fn paths(&self) -> &[HeardPath] {
         &self.paths
     }

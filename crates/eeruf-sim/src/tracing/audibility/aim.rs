@@ -18,7 +18,7 @@ pub(crate) struct Aim<'a> {
 }
 
 impl Aim<'_> {
-    /// The axis.
+    /// Returns the axis.
     pub(crate) fn axis(&self) -> Vector {
         self.axis
     }

@@ -1,6 +1,6 @@
 //! Range of sound, by its strength at departure.
 
-/// Number of steps in each octave of the square of an amplitude.
+/// Bits that number the steps within an octave of the square of an amplitude: four steps.
 const STEPS_BITS: u32 = 2;
 /// Number of octaves in the table; fainter sound has the range of the faintest entry.
 const OCTAVES: usize = 64;

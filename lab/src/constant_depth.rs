@@ -1,5 +1,5 @@
-//! Regions of constant depth: how far a Polaroid 6500 may turn from a smooth wall and still hear it, by distance and
-//! gain. `docs/explanation/physics.md` compares them with published ones.
+//! Regions of constant depth: the angle up to which a Polaroid 6500 hears a smooth wall, by distance and gain.
+//! `docs/explanation/physics.md` compares the regions with published ones.
 //!
 //! ```text
 //! cargo lab constant-depth

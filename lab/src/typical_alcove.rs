@@ -59,7 +59,7 @@ fn figures(world: &World) -> Result<[f64; 4], SimulationError> {
     Ok([conventional.wrong_of_all, eeruf.wrong_of_all, lost, eeruf.starved as f64])
 }
 
-/// Returns the share of alcoves with a smaller figure, counting equal ones half.
+/// Returns the share of alcoves with a smaller figure; equal figures count half.
 fn rank(each: &[[f64; 4]], figure: usize, value: f64) -> f64 {
     let count = |is: fn(&f64, &f64) -> bool| each.iter().filter(|of| is(&of[figure], &value)).count() as f64;
     (count(|a, b| a < b) + 0.5 * count(|a, b| a == b)) / each.len() as f64

@@ -4,7 +4,7 @@
 /** @typedef {{paper: string, floor: string, ink: string, muted: string, faint: string, right: string, wrong: string,
  *   rejected: string, listening: string, robot: string, sensors: string[]}} Colours */
 
-/** Ten colours of sensors, those of the project's pictures; every tenth sensor has the same. */
+/** Ten colours of sensors, as in the project's pictures; every tenth sensor has the same. */
 const ON_LIGHT = [
   "#1f6fb4",
   "#c65f0a",

@@ -17,7 +17,7 @@ const FIELDS = [
   { name: "tick", label: "Firing times are multiples of", unit: "µs", step: "10" },
 ];
 
-/** With more sensors than this a search takes a while, and the page says so. */
+/** With more sensors than this a search takes a while, and the page shows a note. */
 const FEW = 24;
 const MANY =
   "So many sensors take a minute or two. “Stop” ends it; a robot that stands (0 m/s) and coarser firing times are quicker.";

@@ -119,7 +119,7 @@ export function drawWays(context, view, traced, receiver, colours) {
 
 /**
  * @param {CanvasRenderingContext2D} context @param {View} view @param {Traced} traced
- * @param {{sensor: number, blind: number[]}} looks The sensor that is looked at, and those that are blind.
+ * @param {{sensor: number, blind: number[]}} looks The selected sensor, and the blind sensors.
  * @param {Colours} colours
  */
 export function drawRobot(context, view, traced, { sensor: looked, blind }, colours) {

@@ -11,7 +11,7 @@ import { View, contextOf } from "./view.js";
 const NEAR_PX = 26;
 
 /**
- * @typedef {object} Moment What is drawn.
+ * @typedef {object} Moment The contents of the pictures at a moment.
  * @property {import("./state.js").State} state
  * @property {import("./view.js").Box} box
  * @property {import("./draw-scene.js").Traced | null} traced

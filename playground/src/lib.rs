@@ -3,7 +3,7 @@
 //!
 //! | file | content |
 //! |---|---|
-//! | `exports` | what JavaScript calls: a text goes in, a text comes out |
+//! | `exports` | the functions that JavaScript calls: a text goes in, a text comes out |
 //! | `question` | the questions that the page can ask |
 //! | `trace` | every critical path of a ring, with its corners |
 //! | `run` | a scene under a firing method: readings, figures, who fooled whom |

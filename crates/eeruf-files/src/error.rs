@@ -103,7 +103,7 @@ impl FileError {
         &self.message
     }
 
-    /// Returns true if the disk has no room for what was to be written.
+    /// Returns true if the disk has no room for the data to be written.
     pub fn is_full(&self) -> bool {
         self.is_full
     }

@@ -108,7 +108,7 @@ pub fn doubts_in(text: &str) -> Vec<FileError> {
     of_keys.into_iter().map(warning).collect()
 }
 
-/// Collects the implausible values of a table and of those within it, with their places.
+/// Collects the implausible values of a table and its subtables, with their places.
 fn in_table(table: &DeTable<'_>, found: &mut Vec<(usize, String)>) {
     for (key, value) in table {
         let (key, at) = (key.get_ref().as_ref(), key.span().start);
@@ -160,7 +160,7 @@ fn spacing(table: &DeTable<'_>, at: usize, found: &mut Vec<(usize, String)>) {
     }
 }
 
-/// Returns a message if the value of a key is implausible: the value, the plausible ones and the likely cause.
+/// Returns a message if the value of a key is implausible: the value, the plausible range and the likely cause.
 ///
 /// ```
 /// assert_eq!(eeruf_files::doubt("t_delta_us", 500.0), None);

@@ -34,7 +34,7 @@ impl ScheduleFile {
     /// Returns the schedule.
     ///
     /// # Errors
-    /// A message that names the key, its value and what is expected.
+    /// A message that names the key, its value and the expected value.
     pub fn schedule(&self) -> Result<AnySchedule, String> {
         let micros = |us: &[u32]| us.iter().copied().map(Micros::new).collect::<Vec<_>>();
         let build = |lag: &[u32], a: &[u32], b: &[u32]| {

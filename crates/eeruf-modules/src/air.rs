@@ -1,4 +1,4 @@
-//! The air: its speed of sound and how much sound it absorbs (ISO 9613-1).
+//! The air: speed of sound and absorption (ISO 9613-1).
 
 /// State of the air.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -65,7 +65,7 @@ pub fn like(name: &str) -> Option<&'static Module> {
     LIKE.iter().find(|(known, _)| is(known, name)).map(|&(_, module)| module)
 }
 
-/// Returns an explanation for a module that behaves like no preset.
+/// Returns an explanation for a module that is unlike any preset.
 pub(crate) fn why_not(name: &str) -> Option<&'static str> {
     OTHER.iter().find(|(known, _)| is(known, name)).map(|&(_, why)| why)
 }

@@ -3,10 +3,10 @@
 /// Time for which a clone of the HC-SR04 holds its line without an echo, in microseconds.
 pub(crate) const CLONE_HOLDS_US: u32 = 200_000;
 
-/// A ranging module. Change what differs from a preset, by field or by [`set`](Self::set).
+/// A ranging module. Start from a preset and change its fields, directly or by [`set`](Self::set).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Module {
-    /// The name in files: that of a preset, or of the one that it differs from.
+    /// The name in files: the name of a preset, or of the preset that the module was derived from.
     pub name: &'static str,
     /// The farthest range that the module reports, in mm.
     pub sees_to_mm: u32,

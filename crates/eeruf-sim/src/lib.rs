@@ -4,7 +4,7 @@
 //! - A [`Scene`] is walls, poles and air, checked once. [`Scene::paths`] answers with *every* specular path; a
 //!   [`Tracer`] does so again and again without allocating.
 //! - [`Transducer`], [`Piston`], [`Material`] and [`Air`] turn a path into an amplitude; [`CrosstalkMatrix`] does so
-//!   for a whole ring and says who hears whom.
+//!   for each pair of sensors of a ring.
 //! - [`reception`] solves for the moment at which sound meets a moving receiver; [`Scene::contact`] finds the objects
 //!   that a robot touches.
 //! - A [`Simulation`] runs step by step under the caller's own controller, and with the caller's own [`FiringMethod`]

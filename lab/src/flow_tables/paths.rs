@@ -1,5 +1,5 @@
 //! Core's own ring in sound made of paths alone: each sensor hears several equally loud paths from four others. Also
-//! measures how far readings that fit lead a belief away after its wall is gone.
+//! measures the distance by which fitting readings lead a belief away after its wall is gone.
 
 use eeruf_core::flow::{BeliefSettings, FlowRing, InTurn, TurnSettings, Votes};
 use eeruf_core::judge::{Judge, MedianFilter};

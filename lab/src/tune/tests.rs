@@ -37,7 +37,7 @@ fn search(rounds: &[Round], folder: &Path) -> Tuned {
 fn small_search_takes_the_best_pilot() {
     let folder = folder("small");
     let tuned = search(&SMALL, &folder);
-    // The same by hand: the two best of three on course 0, then the better of those on 1 and 2.
+    // The same search by hand takes the two best of three on course 0, then the better of those on 1 and 2.
     let value = |pilot: usize, first: u64, seeds: u64| -> f64 {
         let places = [None, Some(eeruf_sim::experiments::set_two::SECOND_BEHIND)];
         let ahead = Some(eeruf_sim::experiments::set_two::SECOND_AHEAD);

@@ -76,7 +76,7 @@ methods! {
     /// Like [`flow`](Self::Flow), with sensors that report up to eight echoes of a firing.
     FlowMultiEcho = "flow_multi_echo" { firing: flow::WAY, judge: Belief, echoes: MAX_ECHOES, on_demand: true, }
     /// One by one, each as soon as the one before has answered or was given up, as the loop of a sketch or a ping timer
-    /// fires; see [`Sketch`](crate::Sketch). Every echo is believed, unless that says otherwise.
+    /// fires; see [`Sketch`](crate::Sketch). Every echo is believed unless the sketch says otherwise.
     InTurn = "in_turn" { firing: sketch::way(sketch::in_turn), judge: AsSketched, }
     /// Arrays side by side, each as [`in_turn`](Self::InTurn).
     Arrays = "arrays" { firing: sketch::way(sketch::arrays), judge: AsSketched, }

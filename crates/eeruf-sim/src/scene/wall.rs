@@ -50,7 +50,7 @@ impl Wall {
         Self { material, ..self }
     }
 
-    /// The walls of a polyline in order, with free space on their left. Repeat the first corner at the end to close it.
+    /// Returns the walls of a polyline in order, free space on the left. Repeat the first corner at the end for a loop.
     ///
     /// ```
     /// use eeruf_sim::Wall;

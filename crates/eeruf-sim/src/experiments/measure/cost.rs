@@ -24,7 +24,7 @@ pub struct Point {
     pub setting: Setting,
 }
 
-/// The setting at which a family is used under a condition, chosen in rooms that reports do not use.
+/// The setting at which a family is used under a condition, chosen in rooms that are not reported.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Operating {
     /// The setting of least t95 with no more false stops than asked for.

@@ -96,7 +96,7 @@ impl RoomGroup {
 /// way are those of the median room.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct RoomFigures {
-    /// Shares of the time by what was last believed.
+    /// Shares of the time by the state of the last belief.
     #[serde(flatten)]
     pub belief: BeliefShares,
     /// 95 % confidence interval of the mean share that is right.
@@ -475,7 +475,7 @@ mod tests {
         ];
         for worse in worse {
             assert_eq!(chosen(&[Ok([USUAL; 2]), Ok([good, worse])]), (Some(0), true), "{worse:?}");
-            // If all ways exceed the limits, the one that is right most is named, and marked as exceeding them.
+            // If all ways exceed the limits, the way that is right most is named, and marked as exceeding them.
             let base = RoomFigures { foreign_of_believed: 0.5, ..USUAL };
             assert_eq!(chosen(&[Ok([base; 2]), Ok([good, worse])]).0, Some(1), "{worse:?}");
         }
@@ -492,7 +492,7 @@ mod tests {
         assert_eq!((of(0), of(2), of(3), of(40)), ([1.0, 1.0], [1.0, 1.0], [1.0, 4.0], [3.0, 4.0]));
     }
 
-    // The factor is 2 in each room of one kind, and 1 or 4 in those of the other.
+    // The factor is 2 in each room of one kind, and 1 or 4 in the rooms of the other kind.
     #[test]
     fn interval_of_a_factor_comes_from_rooms_that_differ_in_it() {
         let runs = |echoes: &[f64]| -> Vec<Run> {

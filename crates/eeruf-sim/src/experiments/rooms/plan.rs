@@ -202,7 +202,7 @@ impl Draft {
     }
 }
 
-/// Returns the direction of the longest free way from a place, and its length in metres, up to what a robot drives.
+/// Returns the direction of the longest free way from a place, and its length in metres, at most 10.
 fn longest_way(from: Vector, directions: &[f64], is_free: impl Fn(Vector) -> bool) -> (Vector, f64) {
     const STEP_M: f64 = 0.05;
     let ways = directions.iter().map(|&rad| {

@@ -60,7 +60,7 @@ pub struct Run {
     pub good_lost: Option<f64>,
     /// See [`Figures::right_echoes_per_s`].
     pub right_echoes_per_s: f64,
-    /// Shares of the time by what was last believed.
+    /// Shares of the time by the state of the last belief.
     #[serde(flatten)]
     pub belief: BeliefShares,
     /// See [`Figures::blind`].

@@ -13,7 +13,7 @@ use crate::simulation::error::SimulationError;
 /// use std::sync::Arc;
 /// use eeruf_core::{EchoFilter, MAX_SENSORS, Micros};
 /// use eeruf_sim::*;
-/// /// The paper's filter, here as one's own: with conventional firing it gives what the method `comparison` does.
+/// /// The paper's filter as your own: with conventional firing it gives the readings of the method `comparison`.
 /// struct Mine(EchoFilter<MAX_SENSORS>);
 /// impl Filter for Mine {
 ///     fn push(&mut self, firing: &FiredReading<'_>) -> Result<Filtered, OwnError> {

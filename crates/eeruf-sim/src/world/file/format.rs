@@ -36,7 +36,7 @@ pub(super) struct WorldFile {
     pub(super) faults: Vec<Spanned<FaultFile>>,
 }
 
-/// Reads a seed: a number, or from 2^63 on, where TOML's numbers end, a text.
+/// Reads a seed: a number, or a text from 2^63 on, where TOML's whole numbers end.
 fn seed<'de, D: Deserializer<'de>>(deserializer: D) -> Result<u64, D::Error> {
     #[derive(Deserialize, Serialize)]
     #[serde(untagged, expecting = "expected a whole number from 0 to 18446744073709551615")]

@@ -24,8 +24,8 @@ pub trait MakeOwn: fmt::Debug + Send + Sync {
     fn make(&self, robots: &[Robot]) -> Result<Own, OwnError>;
 }
 
-/// A method under a name, with its own schedule, settings and code. Simulations and all experiments accept it. The
-/// robot or the experiment supplies missing settings.
+/// A named method with its own schedule, settings and code. Simulations and all experiments accept it. The robot or the
+/// experiment supplies missing settings.
 ///
 /// ```
 /// use eeruf_core::Micros;

@@ -27,8 +27,8 @@ pub struct Robot {
     /// The kind of transducer. Robots hear each other if their [bands overlap](Transducer::hears); the bands of the
     /// presets do not.
     pub transducer: Transducer,
-    /// The module of each sensor, if not all are [`transducer`](Self::transducer)s. That field then holds the
-    /// transducer of the first module. Empty by default.
+    /// The module of each sensor; [`transducer`](Self::transducer) then belongs to the first one. Empty, the default,
+    /// if that transducer describes all sensors.
     pub modules: Vec<Module>,
     /// The outline, which reflects and shades the sound of others and may not overlap a wall, a pole or another body.
     /// For the robot's own sensors it only blocks sound from behind. The default is none: the robot is transparent, and
@@ -73,9 +73,9 @@ pub struct Robot {
     pub neighbours: u8,
     /// Number of consecutive readings that must agree, 2 to 8. The default is 2, as in the paper.
     pub consecutive: u8,
-    /// Window and `T_delta` of each sensor, if they differ, for its own [`schedule`](Self::schedule);
-    /// [`window`](Self::window) and [`t_delta`](Self::t_delta) are then the largest, which other methods use for all.
-    /// Empty by default.
+    /// Window and `T_delta` of each sensor, if they differ, for the robot's own [`schedule`](Self::schedule). Other
+    /// methods use [`window`](Self::window) and [`t_delta`](Self::t_delta) for all sensors, which are then the largest
+    /// values. Empty by default.
     pub limits: Vec<SensorLimits>,
     /// The settings of a sketch that fires the robot's ring.
     pub firing: Sketch,

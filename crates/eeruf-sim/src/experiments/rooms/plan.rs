@@ -313,7 +313,7 @@ impl RoomPlan {
     /// Returns the walls and poles as a scene.
     ///
     /// # Errors
-    /// [`SceneError`] for measures that make no walls.
+    /// [`SceneError`] for dimensions that make no valid walls.
     pub fn scene(&self) -> Result<Scene, SceneError> {
         Scene::new(self.walls.clone(), self.poles.clone(), Air::default())
     }

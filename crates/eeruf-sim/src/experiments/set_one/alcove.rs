@@ -44,7 +44,7 @@ impl Alcove {
     /// Returns the three walls.
     ///
     /// # Errors
-    /// [`SceneError`] for measures that make no walls.
+    /// [`SceneError`] for dimensions that make no valid walls.
     pub fn scene(&self) -> Result<Scene, SceneError> {
         let half = 0.5 * self.width_m;
         let corners = [[half, 0.0], [half, self.depth_m], [-half, self.depth_m], [-half, 0.0]];
@@ -71,7 +71,7 @@ impl Alcove {
     /// Returns walls and robot together, with the default noise and up to six bounces of sound.
     ///
     /// # Errors
-    /// [`WorldError`] for measures that make no walls or leave no room for the robot.
+    /// [`WorldError`] for dimensions that make no valid walls or leave no room for the robot.
     pub fn world(&self) -> Result<World, WorldError> {
         World::new(self.scene()?, vec![self.robot()], Noise::default())
     }

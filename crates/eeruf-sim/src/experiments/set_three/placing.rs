@@ -113,7 +113,7 @@ impl Placing {
     /// Returns the four walls.
     ///
     /// # Errors
-    /// [`SceneError`] for measures that make no walls.
+    /// [`SceneError`] for dimensions that make no valid walls.
     pub fn scene(&self) -> Result<Scene, SceneError> {
         let [x, y] = self.room_m.map(|side| 0.5 * side);
         let corners = [[x, -y], [x, y], [-x, y], [-x, -y], [x, -y]];

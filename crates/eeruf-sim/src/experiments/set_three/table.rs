@@ -190,7 +190,7 @@ pub fn group(names: &[&str], runs: &[Vec<Run>]) -> Vec<Group> {
 /// Makes a placing as a world of rings that fire by a method.
 ///
 /// # Errors
-/// [`WorldError`] for a placing that cannot be.
+/// [`WorldError`] for an invalid placing.
 pub fn world_of(asked: &SetThreeOptions, placing: &Placing, entry: &Entry) -> Result<World, WorldError> {
     let robot = |robot: &Robot| entry.robot(robot.clone().with_pattern(Some(asked.gain), None));
     let robots = placing.robots.iter().map(robot).collect();

@@ -37,7 +37,7 @@ pub fn rigid_cylinder_form(ka: f64, phi_rad: f64) -> f64 {
     (2.0 / (PI * ka)).sqrt() * libm::hypot(real, imaginary)
 }
 
-/// Returns the reflection of a rigid cylinder relative to geometric optics, `sqrt(cos(i) / 2)`, at an incidence `i`.
+/// Returns a rigid cylinder's reflection relative to geometric optics, `sqrt(cos(i) / 2)`, at an incidence `i`.
 ///
 /// ```
 /// let eight_millimetres = eeruf_sim::pole_wave_correction(std::f64::consts::TAU * 49_400.0 / 343.2 * 0.004, 0.0);

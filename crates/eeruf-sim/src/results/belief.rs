@@ -25,8 +25,8 @@ pub struct BeliefShares {
     pub phantom: f64,
     /// Share of time with an own echo later than the reference, or with silence where the sensor alone hears an echo.
     pub too_far: f64,
-    /// Share of time with an own echo earlier than the reference, or although the sensor alone hears none: faint but
-    /// real.
+    /// Share of time with an own echo that is earlier than the reference, or that comes although the sensor alone hears
+    /// none: faint but real.
     pub faint: f64,
 }
 

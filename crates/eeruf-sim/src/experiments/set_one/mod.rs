@@ -1,5 +1,5 @@
-//! Set I (Sec. 4): eight sensors before three walls at right angles. Each reading is compared with the sensor's reading
-//! if it were alone.
+//! Set I (Sec. 4): eight sensors before three walls at right angles. Each reading is compared with the reading that the
+//! sensor would have alone.
 //!
 //! The paper does not give the dimensions of the alcove. Here it is a U 1.0 to 2.4 m wide and 0.9 to 2.0 m deep. A ring
 //! of radius 0.30 m in or near its mouth heads into it within 20 degrees. Everything else is the default of

@@ -144,7 +144,7 @@ impl Course {
     /// followed for two bounces at walls, or one at a pole: a choice, for speed, which leaves out fainter sound.
     ///
     /// # Errors
-    /// [`WorldError`] if something does not fit.
+    /// [`WorldError`] if a pole or a robot does not fit.
     pub fn world(&self, robot: Robot, second: Option<Point>) -> Result<World, WorldError> {
         let mut robots = vec![robot];
         let body = robots[0].body.map(|_| Body::Disc(RADIUS_M));

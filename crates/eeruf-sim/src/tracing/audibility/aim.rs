@@ -33,7 +33,7 @@ impl Aim<'_> {
         self.reach.at(1.0)
     }
 
-    /// Returns the longest path, in metres, after which sound may be heard that leaves within a cone and keeps
+    /// Returns the longest path, in metres, on which sound may be heard if it leaves within a cone and keeps
     /// `reflection_gain` of its amplitude at walls. `axis` is the transducer's axis in the cone's world.
     #[inline]
     pub(crate) fn reach_m(&self, axis: Vector, left: Vector, right: Vector, reflection_gain: f64) -> f64 {

@@ -10,8 +10,8 @@ use crate::sound::SpeedOfSound;
 use crate::time::Micros;
 use crate::verified::VerifiedSchedule;
 
-/// Watches the rejection rate over windows of some periods, and says when to change to another schedule of a *ladder*:
-/// verified schedules for one ring, from the shortest period to the longest.
+/// Watches the rejection rate over windows of several periods and decides when to move to another schedule of a
+/// *ladder*: verified schedules for one ring, from the shortest period to the longest.
 ///
 /// One noisy window moves one rung up, to a longer period; only several consecutive calm windows move one rung down.
 /// Give it the [`PeriodStats`] of a [`Ring`](crate::Ring) that began with the shortest period, and the ring's
@@ -39,8 +39,7 @@ pub type Adaptation<'s, R> = OnLadder<&'s [R]>;
 pub struct OnLadder<L> {
     rungs: L,
     rung: usize,
-    /// Rejection rate, in thousandths, above which the ring fires more slowly. Default: 300, a choice of ours; the
-    /// paper names none.
+    /// Rejection rate, in thousandths, above which the ring fires more slowly. Default: 300; the paper gives no value.
     pub noisy_permille: u16,
     /// Largest rejection rate of a calm window, in thousandths. Default: 100.
     pub calm_permille: u16,
@@ -55,8 +54,8 @@ pub struct OnLadder<L> {
 }
 
 impl<L: Deref<Target = [VerifiedSchedule<K, M, U>]>, const K: usize, const M: usize, U> OnLadder<L> {
-    /// Starts on the lowest of these rungs, the shortest period. Each rung was verified by itself; a ring changes only
-    /// to those that allow its own `t_delta` and window.
+    /// Starts on the first rung, the shortest period. Each rung is verified by itself; a ring changes only to rungs
+    /// that allow its own `t_delta` and window.
     ///
     /// # Errors
     /// [`ScheduleError`] if there is no rung, if a period is not longer than the one before, or if the number of
@@ -65,16 +64,16 @@ impl<L: Deref<Target = [VerifiedSchedule<K, M, U>]>, const K: usize, const M: us
         Self::of(rungs, |rung| (rung.sensors(), rung.period()))
     }
 
-    /// The fastest motion, in mm/s, at which good readings of a ring with this `t_delta` still pass on the rung in use,
-    /// where sound travels at `c` (see [`Schedule::max_speed_mm_s`](crate::Schedule::max_speed_mm_s)).
+    /// The maximum speed, in mm/s, at which good readings still pass on the current rung, for a ring with this
+    /// `t_delta` and a speed of sound `c` (see [`Schedule::max_speed_mm_s`](crate::Schedule::max_speed_mm_s)).
     pub fn max_speed_mm_s(&self, t_delta: Micros, c: SpeedOfSound) -> u32 {
         self.rungs.get(self.rung).map_or(0, |schedule| schedule.max_speed_mm_s(t_delta, c.mm_per_s()))
     }
 }
 
 impl<'s, R> Adaptation<'s, R> {
-    /// Records one period, and calls `change` when another schedule is better. If the change fails, it stays on its
-    /// rung and tries again after the next window that calls for a change. Returns true if the schedule changed.
+    /// Records one period, and calls `change` when another schedule is better. If the change fails, the rung stays and
+    /// the next window that calls for a change tries again. Returns true if the schedule changed.
     ///
     /// # Errors
     /// Whatever `change` returns.
@@ -89,7 +88,7 @@ impl<'s, R> Adaptation<'s, R> {
 }
 
 impl<L: Deref<Target = [R]>, R> OnLadder<L> {
-    /// Number of sensors and period of a rung, as `needs` gives them.
+    /// Checks the rungs and starts on the first; `needs` returns a rung's number of sensors and its period.
     fn of(rungs: L, needs: impl Fn(&R) -> (usize, Micros)) -> Result<Self, ScheduleError> {
         let Some((expected, _)) = rungs.first().map(&needs) else { return Err(ScheduleError::NoRung) };
         let mut before = None;
@@ -116,7 +115,7 @@ impl<L: Deref<Target = [R]>, R> OnLadder<L> {
         })
     }
 
-    /// Adapts like [`adapt`](Adaptation::adapt), but gives `change` the rung's number.
+    /// Adapts like [`adapt`](Adaptation::adapt), but passes the rung's number to `change`.
     ///
     /// # Errors
     /// Whatever `change` returns.
@@ -146,7 +145,7 @@ impl<L: Deref<Target = [R]>, R> OnLadder<L> {
         Ok(true)
     }
 
-    /// The rung for the window that has just ended. A window in which nothing was compared is neither noisy nor calm.
+    /// Chooses the rung after a window has ended. A window in which nothing was compared is neither noisy nor calm.
     fn next_rung(&mut self) -> usize {
         match self.rejection_permille {
             Some(rate) if rate > self.noisy_permille => {
@@ -174,7 +173,7 @@ impl<L: Deref<Target = [R]>, R> OnLadder<L> {
         self.rung
     }
 
-    /// The rejection rate of the last whole window, in thousandths; `None` before, or if nothing was compared in it.
+    /// The rejection rate of the last whole window, in thousandths; `None` before, or if it compared nothing.
     pub const fn rejection_permille(&self) -> Option<u16> {
         self.rejection_permille
     }
@@ -231,7 +230,7 @@ mod tests {
         assert_eq!(adaptation.max_speed_mm_s(REQUIREMENTS.t_delta, SpeedOfSound::AT_20_CELSIUS), 1381);
     }
 
-    // Noisy is more than the one limit and calm no more than the other.
+    // A window is noisy above `noisy_permille`, and calm up to `calm_permille`.
     #[test]
     fn noisy_and_calm_are_beyond_their_limits() {
         let rungs = rungs();
@@ -251,7 +250,7 @@ mod tests {
         assert_eq!(adaptation.rung(), 2);
     }
 
-    // A change that the ring refuses leaves the rung and is asked for again.
+    // If the ring refuses a change, the rung stays and the change is requested again.
     #[test]
     fn refused_change_leaves_rung_and_is_asked_again() {
         let rungs = rungs();

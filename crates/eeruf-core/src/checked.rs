@@ -7,11 +7,10 @@ use crate::time::Micros;
 use crate::verified::VerifiedSchedule;
 use crate::verify::{Violation, ViolationKind};
 
-/// A [`VerifiedSchedule`] that is verified while the program is compiled: a table that breaks a condition does not
-/// build.
+/// Makes a [`VerifiedSchedule`] at compile time: a table that violates a condition does not compile.
 ///
-/// Times are whole microseconds. The table is given by lags and waits or by firing times, and `meets` is the
-/// [`Requirements`] to hold; `eeruf design --period-only --emit rust` writes the whole call.
+/// Times are whole microseconds. Give the table as lags and waits or as firing times, and the [`Requirements`] to check
+/// as `meets`; `eeruf design --period-only --emit rust` writes the whole call.
 ///
 /// ```
 /// use eeruf_core::{Layout, Micros, Requirements, VerifiedSchedule, schedule};
@@ -25,7 +24,7 @@ use crate::verify::{Violation, ViolationKind};
 /// assert_eq!(FRONT.sensors(), 4);
 /// ```
 ///
-/// The same table does not compile when 15 ms between neighbours are asked for, since sensor 4 in phase b and sensor 1
+/// The same table does not compile if `meets` requires 15 ms between neighbours, since sensor 4 in phase b and sensor 1
 /// in phase a fire 9 ms apart:
 ///
 /// ```compile_fail
@@ -40,7 +39,7 @@ use crate::verify::{Violation, ViolationKind};
 /// # assert_eq!(FRONT.sensors(), 4);
 /// ```
 ///
-/// Where sensors are not all alike, `each_meets` keeps for each the limits that it was verified for:
+/// If sensors differ, `each_meets` keeps the limits that each one was verified for:
 ///
 /// ```
 /// use eeruf_core::{EachSensor, Layout, Micros, Requirements, Uneven, VerifiedSchedule, schedule};
@@ -125,7 +124,7 @@ pub const fn __checked_each<const K: usize>(
     let schedule = *__checked(schedule, requirements).schedule();
     match schedule.verified_each(requirements) {
         Ok(verified) => verified,
-        // Never: it has just been verified.
+        // Unreachable: the schedule has just been verified.
         Err(_) => panic!("a schedule that does not meet its requirements"),
     }
 }
@@ -145,7 +144,7 @@ pub const fn __checked<const K: usize>(
     }
 }
 
-/// Panics, which is a compile error.
+/// Panics with the violated condition: a compile error.
 const fn refuse(violation: Violation) -> ! {
     match violation.kind {
         ViolationKind::CrosstalkA => panic!("two sensors' crosstalk would be accepted, Eq. (13a)"),
@@ -159,7 +158,7 @@ const fn refuse(violation: Violation) -> ! {
     }
 }
 
-/// Microseconds in an expansion of `schedule!`.
+/// Converts whole microseconds in an expansion of `schedule!`.
 #[doc(hidden)]
 pub const fn __micros<const K: usize>(us: [u32; K]) -> [Micros; K] {
     let mut times = [Micros::ZERO; K];

@@ -16,9 +16,8 @@ pub struct Edge {
     pub at: Instant,
 }
 
-/// A queue of up to `N` edges between one producer, the edge interrupt, and one consumer, the main loop. It needs
-/// neither locks nor an atomic exchange, so that a Cortex-M0 can use it, nor atomic words of more than 16 bits, so that
-/// an AVR can.
+/// A lock-free queue of up to `N` edges from one producer, the edge interrupt, to one consumer, the main loop. It needs
+/// no atomic exchange, which a Cortex-M0 lacks, and no atomic access wider than 16 bits, for AVRs.
 ///
 /// `N` is a power of two from 2 to 128: a mask then keeps every index in range without a check.
 ///
@@ -31,11 +30,11 @@ pub struct Edge {
 /// ```
 #[derive(Debug)]
 pub struct EdgeQueue<const N: usize> {
-    /// Times of the edges: low and high half.
+    /// Times of the edges, each as a low and a high half.
     at: [[AtomicU16; 2]; N],
     /// Sensor of each edge; the highest bit is set if the line rose.
     line: [AtomicU8; N],
-    /// Total number of edges pushed, and of edges popped; both wrap.
+    /// Total numbers of edges pushed and popped; both wrap.
     pushed: AtomicU8,
     popped: AtomicU8,
     lost: AtomicU8,
@@ -79,7 +78,7 @@ impl<const N: usize> EdgeQueue<N> {
         self.lost.store(self.lost.load(Ordering::Relaxed).wrapping_add(1), Ordering::Relaxed);
     }
 
-    /// The oldest edge not yet taken out. Call it from the main loop only.
+    /// Takes out the oldest edge. Call it from the main loop only.
     #[inline]
     pub fn pop(&self) -> Option<Edge> {
         let popped = self.popped.load(Ordering::Relaxed);
@@ -94,13 +93,13 @@ impl<const N: usize> EdgeQueue<N> {
         Some(Edge { sensor: line & !HIGH, high: line & HIGH != 0, at })
     }
 
-    /// Returns true if no edge waits; call it with interrupts off before going to sleep.
+    /// Returns true if no edge is waiting; call it with interrupts off before going to sleep.
     pub fn is_empty(&self) -> bool {
         self.popped.load(Ordering::Relaxed) == self.pushed.load(Ordering::Relaxed)
     }
 
-    /// Number of edges that found the queue full. The count wraps at 256 instead of stopping: read it at least once a
-    /// period, and take the difference.
+    /// Number of edges lost because the queue was full. The count wraps at 256 instead of stopping: read it at least
+    /// once a period, and take the difference.
     pub fn lost(&self) -> u8 {
         self.lost.load(Ordering::Relaxed)
     }

@@ -60,7 +60,7 @@ impl From<embassy_time::Instant> for Instant {
 
 #[cfg(feature = "embassy-time")]
 impl Instant {
-    /// The instant of embassy's 64-bit clock for an [`Instant`], the one nearest to `now`.
+    /// Extends an [`Instant`] to embassy's 64-bit clock: the instant nearest to `now`.
     pub fn to_embassy(self, now: embassy_time::Instant) -> embassy_time::Instant {
         embassy_time::Instant::from_micros(self.to_wide(now.as_micros()))
     }
@@ -98,7 +98,7 @@ mod tests_of_core {
     extern crate std;
     use super::*;
 
-    // Durations of core go there and back as far as 32 bits of microseconds reach.
+    // Durations of core survive a round trip within 32 bits of microseconds.
     #[test]
     fn core_durations_round_trip_within_32_bits() {
         assert_eq!(Micros::from(Duration::from_nanos(24_000_999)), Micros::from_millis(24));
@@ -114,7 +114,7 @@ mod tests_of_core {
 mod tests_of_embassy {
     use super::*;
 
-    // Embassys times go there and back beyond 32 bits of microseconds.
+    // Embassy's times survive a round trip beyond 32 bits of microseconds.
     #[test]
     fn embassy_times_round_trip_beyond_32_bits() {
         let duration = embassy_time::Duration::from_millis(24);

@@ -10,13 +10,13 @@ use crate::time::{Instant, Micros};
 pub struct FiringContext {
     /// The phase of the schedule in which the sensor fired.
     pub phase: Phase,
-    /// Expected change of a good reading since this sensor's firing before, in microseconds, if it comes from straight
-    /// ahead: `-2 d / c` for a sensor carried forward by `d`.
+    /// Expected change of a good reading since this sensor's previous firing, in microseconds, for an object straight
+    /// ahead: `-2 d / c` for a sensor that moved forward by `d`.
     pub expected_change_us: i32,
 }
 
 impl FiringContext {
-    /// The context of a firing in this phase, for a robot that stands.
+    /// The context of a firing in this phase, on a stationary robot.
     pub const fn new(phase: Phase) -> Self {
         Self { phase, expected_change_us: 0 }
     }
@@ -29,7 +29,7 @@ pub struct Heard<'r> {
     pub sensor: u8,
     /// Time of the firing.
     pub fired: Instant,
-    /// Time since the sensor's previous firing; meaningless if that was forgotten.
+    /// Time since the sensor's previous firing; meaningless if that firing was forgotten.
     pub since_before: Micros,
     /// The echo times, earliest first; empty for silence.
     pub echoes: &'r [Micros],
@@ -40,7 +40,7 @@ pub struct Heard<'r> {
 }
 
 impl Heard<'_> {
-    /// The verdict of a judge that knows nothing of the sensor.
+    /// The verdict of a judge that knows nothing about the sensor.
     pub(crate) fn unjudged(&self, kind: Option<ReadingKind>) -> Verdict {
         let t_echo = self.echoes.first().copied();
         let kind = kind.unwrap_or(if t_echo.is_some() { ReadingKind::First } else { ReadingKind::NoEcho });
@@ -54,7 +54,7 @@ impl Heard<'_> {
 pub(crate) struct Age(u16);
 
 impl Age {
-    /// Age of a sensor none of whose readings was ever accepted.
+    /// Age of a sensor that has never had a reading accepted.
     pub(crate) const NEVER: Self = Self(u16::MAX);
 
     pub(crate) fn get(self) -> Option<u16> {
@@ -95,17 +95,17 @@ impl Explained {
 /// A ring's knowledge of the sounds that a sensor may have heard. If the ring remembers fewer firings than a judge asks
 /// about, the program does not compile.
 pub trait Sounds {
-    /// The firing whose sound could be both the echo heard `first` after the sensor's last firing but one and the echo
-    /// heard `second` after its last firing, along a path that changes by at most P in between.
+    /// Finds a firing that explains two echoes: one heard `first` after the sensor's second-to-last firing, the other
+    /// `second` after its last, along a path that changes by at most P in between.
     fn explain(&self, first: Micros, second: Micros) -> Explained;
-    /// Returns the explanation like [`explain`](Self::explain), for paths that change by up to `more` than P.
+    /// Explains like [`explain`](Self::explain), for paths that change by up to P plus `more`.
     fn explain_moving(&self, first: Micros, second: Micros, more: Micros) -> Explained {
         self.explain_after(1, first, second, more)
     }
-    /// Returns the explanation like [`explain_moving`](Self::explain_moving), with the `first` echo after the firing
-    /// `ago` firings before the sensor's last one.
+    /// Explains like [`explain_moving`](Self::explain_moving), but takes `first` from the firing that was `ago` firings
+    /// before the sensor's last one.
     fn explain_after(&self, ago: u8, first: Micros, second: Micros, more: Micros) -> Explained;
-    /// Returns true if sound of any firing except the sensor's last could be the echo that it heard after that one.
+    /// Returns true if the echo that the sensor heard after its last firing could be the sound of any other firing.
     fn is_masked(&self, t_echo: Micros) -> bool;
 }
 
@@ -121,7 +121,7 @@ pub enum Quiet {
     More,
 }
 
-/// The robot's motion, for the gaps of a plan that gives quiet.
+/// The robot's motion, for plans that adapt their gaps to it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Pace {
@@ -132,11 +132,11 @@ pub struct Pace {
 }
 
 impl Pace {
-    /// The motion of a robot that stands.
+    /// The motion of a stationary robot.
     pub const STANDING: Self = Self { moves: false, every_echo: false };
 }
 
-/// A source of no sound, for readings that no ring fired.
+/// Explains nothing, for readings that were not fired by a ring.
 #[derive(Clone, Copy, Debug)]
 pub struct NoSounds;
 
@@ -156,12 +156,12 @@ impl Sounds for NoSounds {
 
 /// Decides which readings of a [`Ring`](crate::Ring) to accept: [`EchoFilter`](crate::EchoFilter),
 /// [`Belief`](crate::flow::Belief), [`MOfN`](crate::judge::MOfN), [`Agreement`],
-/// [`MedianFilter`](crate::judge::MedianFilter), or one of the caller's own.
+/// [`MedianFilter`](crate::judge::MedianFilter), or one of your own.
 ///
-/// The ring passes every sensor that it has room for. A judge with room for fewer sensors accepts nothing from the
+/// The ring hands over every sensor that it has room for. A judge with room for fewer sensors accepts nothing from the
 /// others.
 pub trait Judge {
-    /// `T_delta`: the greatest difference of near-identical readings.
+    /// `T_delta`: the greatest difference between near-identical readings.
     fn t_delta(&self) -> Micros;
     /// Judges a firing. `sounds` tells which firings explain readings that agree: a judge that accepts explained
     /// readings accepts crosstalk.
@@ -169,14 +169,14 @@ pub trait Judge {
     /// Handles a firing without information about the echo time: stuck, too early, late, or silence without a witness.
     /// `echoes` holds the early edge, if there was one.
     fn skip(&mut self, heard: &Heard<'_>, kind: ReadingKind) -> Verdict;
-    /// Handles a firing whose sensor still holds its line: it has no echo, but is not silence yet. A run of silences
-    /// goes on, and the next reading is compared with no echo. By default the run ends.
+    /// Handles a firing whose sensor still holds its line: there is no echo, but it does not count as silence yet. A
+    /// run of silences goes on, and the next reading is compared with no echo. By default the run ends.
     fn hold(&mut self, heard: &Heard<'_>) {
         self.skip(heard, ReadingKind::NoEcho);
     }
     /// Number of firings of a sensor since its last accepted reading; `None` if none ever was.
     fn age(&self, sensor: u8) -> Option<u16>;
-    /// Returns true if the judge believes that nothing is in a sensor's range, so that what its last reading heard is
+    /// Returns true if the judge believes that nothing is in a sensor's range, so that any echo in its last reading is
     /// foreign.
     fn is_clear(&self, sensor: u8) -> bool;
     /// The echo time that the judge believes of a sensor; `None` if it believes none, or believes that nothing is in
@@ -184,8 +184,8 @@ pub trait Judge {
     fn believed(&self, _sensor: u8) -> Option<Micros> {
         None
     }
-    /// The firing of a sensor that the echo time of its last verdict stands for: 0 for the last one, 1 for the one
-    /// before, and so on.
+    /// The firing that the echo time of a sensor's last verdict belongs to: 0 for the last one, 1 for the one before,
+    /// and so on.
     fn stands_for(&self, _sensor: u8) -> u8 {
         0
     }
@@ -208,7 +208,7 @@ pub trait Judge {
     /// Restarts the judge with the ring: sound from before may still be heard, and each sensor's next reading is
     /// compared with nothing. Ages keep counting.
     fn restart(&mut self);
-    /// Corrects a sensor's last firing, which is judged already: it was this much later than assumed; negative for
+    /// Corrects a sensor's last firing after its reading was judged: it was this much later than assumed; negative for
     /// earlier.
     fn fired_later(&mut self, _sensor: u8, _later_us: i32) {}
 }

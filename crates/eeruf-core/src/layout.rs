@@ -22,11 +22,11 @@ pub enum Layout<'a> {
     Graph(&'a [u64]),
 }
 
-/// The rows of a [`Layout::Graph`] whose neighbours are these pairs of sensors, counted from 0.
+/// Makes the rows of a [`Layout::Graph`] from pairs of neighbouring sensors, counted from 0.
 ///
 /// # Errors
-/// [`RequirementsError`] for the first pair that names one sensor twice, or one out of range: a layout for another ring
-/// would keep fewer sensors apart than it seems to.
+/// [`RequirementsError`] for the first pair that names one sensor twice, or one out of range: a layout meant for
+/// another ring would keep too few sensors apart.
 ///
 /// ```
 /// use eeruf_core::{Layout, conditions::neighbour_rows};
@@ -57,7 +57,7 @@ impl Layout<'_> {
     /// Checks that all neighbours that a graph names are among `sensors`.
     ///
     /// # Errors
-    /// [`RequirementsError`] for the first that is not.
+    /// [`RequirementsError`] for the first sensor out of range.
     pub fn check(&self, sensors: usize) -> Result<(), RequirementsError> {
         let Layout::Graph(rows) = *self else { return Ok(()) };
         for (x, &row) in rows.iter().enumerate() {
@@ -69,7 +69,7 @@ impl Layout<'_> {
         Ok(())
     }
 
-    /// Returns true if `x` and `y` (from 0) of `sensors` are neighbours; never for a sensor and itself.
+    /// Returns true if `x` and `y` (from 0) of `sensors` are neighbours; a sensor is not its own neighbour.
     pub const fn neighbours(&self, sensors: usize, x: usize, y: usize) -> bool {
         if x == y || x >= sensors || y >= sensors {
             return false;

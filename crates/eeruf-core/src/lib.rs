@@ -1,9 +1,9 @@
 //! *Error Eliminating Rapid Ultrasonic Firing* (EERUF) for rings of ultrasonic range sensors, without an allocator.
 //!
-//! Sensors that fire at the same time hear each other: *crosstalk*. Firing one by one avoids it and is slow. EERUF
+//! Sensors that fire at the same time hear each other: *crosstalk*. Firing one by one avoids it but is slow. EERUF
 //! fires every sensor once per period `T_p` at `T_fire = T_lag + T_wait`, where `T_wait` alternates between two values
 //! that differ from sensor to sensor, and accepts a reading only if it is near-identical to the one before. A true echo
-//! does not depend on the waits; crosstalk shifts with them and is rejected. What is proven, and why: [`theory`].
+//! does not depend on the waits; crosstalk shifts with them and is rejected. The proofs are in [`theory`].
 //!
 //! ```
 //! use eeruf_core::{Instant, ReadingKind, Ring, RingConfig, RingEvent, tables::PAPER_12};
@@ -25,16 +25,16 @@
 //! | To .. | there is |
 //! |---|---|
 //! | fire and judge a ring of sensors | [`Ring`], [`RingConfig`], [`RingEvent`], [`Reading`] |
-//! | say when each sensor fires | [`Schedule`], [`VerifiedSchedule`], [`schedule!`] |
-//! | check that, and see what is violated | [`Requirements`], [`conditions`] |
+//! | define when each sensor fires | [`Schedule`], [`VerifiedSchedule`], [`schedule!`] |
+//! | check a schedule, and list its violations | [`Requirements`], [`conditions`] |
 //! | use sensors that are not all alike | [`Uneven`], [`EachSensor`] |
-//! | filter readings that were fired otherwise | [`EchoFilter`] |
-//! | fire by another plan, or judge otherwise | [`plan`], [`judge`] |
-//! | keep no sensor blind, late or not | [`flow`] |
-//! | know what is before each sensor now | [`watch`] |
-//! | fire more slowly where much is rejected | [`adaptation`] |
+//! | filter readings that other code fires | [`EchoFilter`] |
+//! | fire or judge by rules of your own | [`plan`], [`judge`] |
+//! | leave no sensor blind, even if polls are late | [`flow`] |
+//! | know what is in front of each sensor now | [`watch`] |
+//! | fire more slowly when many readings are rejected | [`adaptation`] |
 //! | measure which sensors hear each other | [`survey`] |
-//! | get edges from an interrupt to the main loop | [`EdgeQueue`] |
+//! | pass edges from an interrupt to the main loop | [`EdgeQueue`] |
 //! | turn echo times into distances | [`SpeedOfSound`] |
 //! | find a schedule | [`search`], the crate `eeruf-period`, or the program `eeruf` |
 //!
@@ -42,8 +42,8 @@
 //! deadline it gets back, so the same code runs in an interrupt, in a simulator and in a test. Sensors are counted from
 //! 0 in code and printed from 1, as in the paper.
 //!
-//! Features: `search`, on by default, is the search for waits, which firmware with a table can leave out (for an
-//! AVR it must). The others are off by default, for crates that firmware already uses: `defmt` (formats), `serde`
+//! Features: `search`, on by default, is the search for waits, which firmware with a table can leave out (and must on
+//! an AVR). The others are off by default, for crates that firmware already uses: `defmt` (formats), `serde`
 //! (schedules, readings and times), `fugit` and `embassy-time` (conversions of times).
 //!
 //! Equations and sections are those of J. Borenstein and Y. Koren, *Error Eliminating Rapid Ultrasonic Firing for
@@ -97,7 +97,7 @@ pub use time::{Instant, Micros};
 pub use uneven::Uneven;
 pub use verified::VerifiedSchedule;
 
-/// Judges of readings: the trait [`Judge`](judge::Judge), and those beside [`EchoFilter`].
+/// Judges of readings: the trait [`Judge`](judge::Judge), and those other than [`EchoFilter`].
 pub mod judge {
     pub use crate::filter::MedianFilter;
     pub use crate::flow::m_of_n::MOfN;
@@ -117,7 +117,7 @@ pub mod conditions {
 
 /// The proofs: `docs/explanation/theory.md`.
 ///
-/// The file in this crate is a link to it, so that a packed crate holds the text too.
+/// A symbolic link puts the text into the packaged crate too.
 #[cfg(doc)]
 #[doc = include_str!("../theory.md")]
 pub mod theory {}

@@ -22,7 +22,7 @@ impl Requirements<'_> {
         }
     }
 
-    /// Least time between two triggers of a sensor; its window if none is given.
+    /// Least time between two triggers of a sensor; its window if no refire time is given.
     pub const fn refire_of(&self, sensor: usize) -> Micros {
         match self.uneven {
             Some(uneven) if sensor < uneven.refire.len() => uneven.refire[sensor],
@@ -30,7 +30,7 @@ impl Requirements<'_> {
         }
     }
 
-    /// The separation that two sensors need, from the larger of their `t_delta`; give a sensor twice for its stale
+    /// The separation that two sensors need, from the larger of their `t_delta`; pass a sensor twice for its stale
     /// echoes. `None` for two that fire together.
     pub const fn separation_of(&self, x: usize, y: usize) -> Option<Micros> {
         if x != y && self.fire_together(x, y) {
@@ -40,7 +40,7 @@ impl Requirements<'_> {
         Some(self.criterion.separation(longer(one, other)))
     }
 
-    /// The least time between the firings of two of this many sensors; `None` if they need none.
+    /// The least time between the firings of two sensors, in a ring of this size; `None` if they need none.
     pub const fn interval_of(&self, sensors: usize, x: usize, y: usize) -> Option<Micros> {
         if let Some(uneven) = self.uneven {
             let mut at = 0;
@@ -91,15 +91,15 @@ impl Requirements<'_> {
         if self.share_a_line(x, y) && window.as_micros() > interval.as_micros() { window } else { interval }
     }
 
-    /// The smallest `t_delta`, the longest time between firings that any sensor or pair of this many sensors keeps, and
-    /// the smallest window.
+    /// The smallest `t_delta`, the longest time between firings that any sensor or pair keeps, and the smallest window,
+    /// in a ring of this size.
     pub(crate) const fn strictest(&self, sensors: usize) -> (Micros, Micros, Micros) {
         let (mut t_delta, mut gap, mut window) = (Micros::MAX, self.min_interval, Micros::MAX);
         let mut x = 0;
         while x < sensors {
             t_delta = shorter(t_delta, self.t_delta_of(x));
             gap = longer(gap, longer(self.window_of(x), self.refire_of(x)));
-            // No window of its own allows any.
+            // A window of zero sets no limit.
             if self.window_of(x).as_micros() > 0 {
                 window = shorter(window, self.window_of(x));
             }
@@ -123,7 +123,7 @@ mod tests {
         Micros::from_millis(ms)
     }
 
-    // After a firing the other keeps the interval or the window of the line that they share.
+    // After a firing, the other sensor waits for the interval, or for the window if both share a line.
     #[test]
     fn gap_after_firing_is_interval_or_shared_window() {
         let windows = [ms(12), ms(40), ms(40)];
@@ -134,7 +134,7 @@ mod tests {
             uneven: Some(uneven),
             ..Requirements::new(Micros::new(999))
         };
-        // The window of who fired first, where it is longer; sensors 2 and 3 share nothing, 1 and 3 are no neighbours.
+        // The window of the first counts where it is longer; sensors 2 and 3 share no line, 1 and 3 are not neighbours.
         for (x, y, gap) in [(0, 1, 20), (1, 0, 40), (1, 2, 15), (2, 1, 15), (0, 2, 0), (2, 0, 0)] {
             assert_eq!(requirements.gap_after(3, x, y), ms(gap), "{x} {y}");
         }

@@ -17,8 +17,8 @@ pub struct SensorLimits {
     pub window: Micros,
 }
 
-/// Limits that the sensors of a schedule have of their own: none, `()`, or some for each, [`EachSensor`]. A plan that
-/// can change its schedule holds references, `&EachSensor`.
+/// Per-sensor limits of a schedule: `()` for none, or [`EachSensor`]. A plan that can change its schedule holds
+/// references, `&EachSensor`.
 pub trait OwnLimits: Copy + fmt::Debug + sealed::Sealed {
     /// The form in which a plan that can change its schedule holds the limits.
     type Held<'s>: OwnLimits
@@ -43,7 +43,7 @@ pub trait OwnLimits: Copy + fmt::Debug + sealed::Sealed {
         true
     }
 
-    /// The first of the sensors that fire together with a sensor; itself if it fires alone.
+    /// The first of the sensors that fire together with this one; the sensor itself if it fires alone.
     #[doc(hidden)]
     #[inline(always)]
     fn leader_of(&self, sensor: u8) -> u8 {
@@ -78,7 +78,7 @@ mod sealed {
 
 impl sealed::Sealed for () {}
 
-/// No limits of their own: all sensors listen and compare alike.
+/// No per-sensor limits: all sensors listen and compare alike.
 impl OwnLimits for () {
     type Held<'s> = Self;
 
@@ -124,7 +124,7 @@ impl<const K: usize> EachSensor<K> {
     }
 
     /// Adds sets of sensors that share an echo line, bit x for sensor x, for rings without a table: none fires before
-    /// the windows of the others have ended. Sets that have a sensor in common are one line.
+    /// the windows of the others have ended. Sets with a common sensor form one line.
     #[must_use]
     pub const fn with_shared_lines(mut self, shared_lines: &[u64]) -> Self {
         let mut at = 0;
@@ -229,7 +229,7 @@ impl<const K: usize> OwnLimits for EachSensor<K> {
 
     fn leader_of(&self, sensor: u8) -> u8 {
         match self.groups.get(usize::from(sensor)) {
-            // Of at most 64.
+            // There are at most 64.
             Some(&group) if group > 0 => self.groups.iter().position(|&other| other == group).unwrap_or(0) as u8,
             _ => sensor,
         }
@@ -286,7 +286,7 @@ impl<const K: usize> OwnLimits for &EachSensor<K> {
     }
 }
 
-/// The limits by the schedules of the present period, the one before and the next; empty if sensors are alike.
+/// The limits of the schedules in the current period, the previous one and the next; empty if sensors are alike.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(crate) struct InUse<U> {
@@ -298,7 +298,7 @@ pub(crate) struct InUse<U> {
 }
 
 impl<U: OwnLimits> InUse<U> {
-    /// Limits of a plan that begins.
+    /// Limits for a plan that begins.
     pub(crate) fn begin(own_limits: U) -> Self {
         Self { now: own_limits, before: own_limits, next: own_limits }
     }

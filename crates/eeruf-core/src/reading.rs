@@ -19,7 +19,7 @@ pub enum ReadingKind {
     Accepted,
     /// Not near-identical to the reading before: crosstalk, noise, or an object that moved too fast.
     Rejected,
-    /// Near-identical to the reading before, but not yet often enough; only where more than two readings are compared.
+    /// Near-identical to the reading before, but not yet often enough; only if more than two readings are compared.
     Repeated,
     /// No echo within the window, once; or repeatedly, if nothing shows that the sensor listened
     /// ([`Silence::NeverFree`](crate::Silence)).
@@ -28,16 +28,16 @@ pub enum ReadingKind {
     Clear,
     /// Only an edge within the blanking time: ringing of the transducer, or an object too close to measure.
     TooEarly,
-    /// An edge after the window has ended; it is not compared. Without an echo time: the edge is not known to within
+    /// An edge after the window has ended; it is not compared. Without an echo time, the edge is uncertain by more than
     /// 0.6 ms.
     Late,
     /// The driver reported that the echo line was stuck when the sensor was to fire.
     Stuck,
-    /// An echo that few readings support so far and none contradicts, nearer than what is confirmed: slow down for it.
-    /// Only from a judge of your own.
+    /// An echo nearer than the confirmed one, with little support so far but no contradiction: slow down for it. Only a
+    /// judge of your own returns it.
     Tentative,
-    /// Near-identical to the reading before, though sound of another firing explains both: [`Explanation`] names it.
-    /// Only from a [`Ring`](crate::Ring).
+    /// Near-identical to the reading before, but sound of another firing explains both: [`Explanation`] names that
+    /// firing. Only a [`Ring`](crate::Ring) returns it.
     Ambiguous,
     /// No evidence at all: neither an echo nor a witness that the sensor listened
     /// ([`Silence::NeedsAnswer`](crate::Silence)). Never free space.
@@ -122,7 +122,7 @@ pub struct Verdict {
     /// The echo time: the accepted one, or else the earliest; `None` without echo.
     #[doc(alias = "T_echo")]
     pub t_echo: Option<Micros>,
-    /// The echo time of the previous firing that it was compared with, if any.
+    /// The echo time of the previous firing that this one was compared with, if any.
     pub previous: Option<Micros>,
     /// Number of firings of this sensor since the last accepted reading: 0 for an accepted one, `None` if none ever
     /// was. Stops at 65,534.
@@ -139,7 +139,7 @@ pub struct Tally<N = u32> {
 }
 
 impl Tally<u8> {
-    /// Nothing counted yet.
+    /// An empty tally.
     pub(crate) const NONE: Self = Self { counts: [0; ReadingKind::ALL.len()] };
 }
 

@@ -7,10 +7,10 @@
 //! |T_x,a - T_y,b| - |T_x,b - T_y,a| > 2 T_delta      (13b)
 //! ```
 //!
-//! where `T` are the waits of phases a and b. Read literally this fails on the paper's own tables (it reaches -22 ms on
-//! Tables I-b and I-d). With the absolute value of the whole left side they have exactly the 2 ms that the paper
-//! claims: [`Criterion::Paper`]. What the derivation from (10a), (10b) really needs is weaker, [`Criterion::Exact`]:
-//! with `d_i = T_i,a - T_i,b`,
+//! where `T` are the waits of phases a and b. Taken literally, the paper's own tables violate this: the left side
+//! reaches -22 ms on Tables I-b and I-d. Its absolute value has exactly the 2 ms that the paper claims:
+//! [`Criterion::Paper`]. The derivation from (10a), (10b) needs only a weaker condition, [`Criterion::Exact`]: with
+//! `d_i = T_i,a - T_i,b`,
 //!
 //! ```text
 //! |d_x - d_y| > 2 T_delta   and   |d_x + d_y| > 2 T_delta
@@ -31,7 +31,7 @@ use crate::schedule::{Phase, Schedule};
 use crate::time::Micros;
 use crate::uneven::Uneven;
 
-/// The reading of Eqs. (13a), (13b).
+/// The interpretation of Eqs. (13a), (13b).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Criterion {
@@ -41,8 +41,8 @@ pub enum Criterion {
     /// waits.
     #[default]
     Exact,
-    /// [`Exact`](Self::Exact), but crosstalk must move by `T_delta` and this margin instead of `2 T_delta + 1 us`: the
-    /// margin is all that jitter, lateness and a path that changes may use.
+    /// [`Exact`](Self::Exact), but crosstalk must move by `T_delta` plus this margin instead of `2 T_delta + 1 us`. The
+    /// margin must cover jitter, lateness and changes of the path.
     Margin(Micros),
 }
 
@@ -51,7 +51,7 @@ impl Criterion {
     pub(crate) const fn separation(self, t_delta: Micros) -> Micros {
         match self {
             Self::Paper | Self::Exact => t_delta.saturating_add(t_delta).saturating_add(Micros::new(1)),
-            // Crosstalk that moves by no more than `T_delta` is supported.
+            // Crosstalk must move by more than `T_delta` in any case.
             Self::Margin(Micros::ZERO) => t_delta.saturating_add(Micros::new(1)),
             Self::Margin(margin) => t_delta.saturating_add(margin),
         }
@@ -75,7 +75,7 @@ impl Criterion {
     }
 }
 
-/// Everything a schedule is to be checked against.
+/// The requirements that a schedule is checked against.
 ///
 /// ```
 /// use eeruf_core::{Layout, Micros, Requirements, tables::TABLE_I_D};
@@ -88,25 +88,24 @@ impl Criterion {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Requirements<'a> {
-    /// `T_delta`: the greatest difference of near-identical consecutive readings (Eq. 11).
+    /// `T_delta`: the greatest difference between near-identical consecutive readings (Eq. 11).
     pub t_delta: Micros,
-    /// The reading of (13a), (13b).
+    /// The interpretation of (13a), (13b).
     pub criterion: Criterion,
     /// The least time between the firings of two neighbours, in each phase and across each period's end; 15 ms in the
     /// paper (Sec. 3.1 c).
     pub min_interval: Micros,
     /// Pairs of neighbours.
     pub layout: Layout<'a>,
-    /// `T_wind`, for which a sensor listens: it must not fire again earlier.
+    /// `T_wind`: how long a sensor listens. It must not fire again within this time.
     pub window: Micros,
-    /// Deaf time of a sensor after it has fired. Two phases reject sound of any age, so they ignore it.
+    /// Deaf time of a sensor after it has fired. Schedules with two phases reject sound of any age and ignore it.
     pub blanking: Micros,
-    /// R: how long sound is audible; `None` for the window. Two phases reject sound of every age; a ring that fires
-    /// late looks no further back than this, or than one period (two with `stale_echo`) where that is shorter or this
-    /// is `None`.
+    /// R: how long sound is audible. A schedule with two phases rejects sound of any age, but a ring that fires late
+    /// looks back by at most this: no longer than one period (two with `stale_echo`), which is also what `None` means.
     pub audible: Option<Micros>,
-    /// Also reject a sensor's own echo from an earlier period, however long its path: `2 |d| > 2 T_delta` for each
-    /// sensor with two phases.
+    /// True to also reject a sensor's own echo from an earlier period, however long its path: `2 |d| > 2 T_delta` for
+    /// each sensor with two phases.
     pub stale_echo: bool,
     /// Needs of single sensors and pairs, where they are not all alike.
     pub uneven: Option<Uneven<'a>>,
@@ -129,7 +128,7 @@ impl Requirements<'_> {
         }
     }
 
-    /// The separation that the `t_delta` of all needs: `2 t_delta + 1 us`, or `t_delta` and the margin.
+    /// The separation that the common `t_delta` needs: `2 t_delta + 1 us`, or `t_delta` and the margin.
     pub const fn separation(&self) -> Micros {
         self.criterion.separation(self.t_delta)
     }
@@ -222,8 +221,8 @@ impl<const K: usize> Schedule<K> {
         }
     }
 
-    /// The smaller left side of (13a), (13b) over all pairs, and the pair that has it; `None` for a single sensor.
-    /// Sorts instead of comparing all pairs.
+    /// The smallest left side of (13a) and (13b) over all pairs, with its pair; `None` for a single sensor. Sorts
+    /// instead of comparing all pairs.
     pub const fn separation(&self, criterion: Criterion) -> Option<Least> {
         let by_shift = closest(&self.shift_sizes(), self.sensors());
         match criterion {
@@ -255,7 +254,7 @@ impl<const K: usize> Schedule<K> {
         sums
     }
 
-    /// Wait of a sensor in a phase, both in range. A wait is below the period, so it fits.
+    /// Wait of a sensor in a phase, both in range. A wait is below the period, so it fits an `i32`.
     const fn wait_us(&self, phase: usize, sensor: usize) -> i32 {
         self.fire_at(phase, sensor).as_micros() as i32 - self.t_lag()[sensor].as_micros() as i32
     }

@@ -10,7 +10,7 @@ use crate::schedule::MAX_SENSORS;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum RequirementsError {
-    /// A pair of neighbours names a sensor out of range, or one twice.
+    /// A pair of neighbours names a sensor out of range, or the same sensor twice.
     Neighbours {
         /// The two sensors, from 0.
         pair: (usize, usize),
@@ -26,7 +26,7 @@ pub enum RequirementsError {
         /// Number of sensors.
         sensors: usize,
     },
-    /// A pair names a sensor out of range, or one twice.
+    /// A pair names a sensor out of range, or the same sensor twice.
     Pair {
         /// The pair, from 0.
         pair: (usize, usize),

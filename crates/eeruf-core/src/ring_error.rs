@@ -23,7 +23,7 @@ pub(crate) const fn within(name: &'static str, value: Micros, least: Micros, mos
     Ok(())
 }
 
-/// The unit in which an out-of-range setting was probably given, and the words for it.
+/// A hint at the unit in which an out-of-range setting was probably given.
 fn likely(name: &str, value: u32, least: u32, most: u32) -> &'static str {
     let fits = |value: Option<u32>| value.is_some_and(|value| (least..=most).contains(&value));
     match name {
@@ -79,7 +79,7 @@ pub enum RingError {
     TDelta {
         /// The `t_delta` asked for.
         t_delta: Micros,
-        /// The one that the schedule was verified for.
+        /// The `t_delta` that the schedule was verified for.
         verified: Micros,
     },
     /// Any two readings within the window would be near-identical, or `t_delta` is longer than a ring can store.
@@ -99,27 +99,26 @@ pub enum RingError {
         /// The change asked for.
         path_change: Micros,
     },
-    /// The schedule was not verified, so that `t_delta` and the window cannot be taken from it.
+    /// The schedule was not verified, so it provides neither `t_delta` nor a window.
     Unverified,
     /// Too few or too many consecutive readings to compare.
     Consecutive {
         /// The number asked for.
         consecutive: u8,
     },
-    /// An interval of an echo, of instants or of echo times, whose end is before its beginning.
+    /// The interval of an echo, in instants or echo times, ends before it begins.
     Interval {
-        /// The earliest, in microseconds.
+        /// The beginning of the interval, in microseconds.
         earliest: u32,
-        /// The latest.
+        /// The end of the interval, in microseconds.
         latest: u32,
     },
     /// A sensor out of range.
     Sensor(SensorError),
     /// A setting, or a judge's argument, out of its range; times are in microseconds.
     Setting {
-        /// The field in [`RingConfig`](crate::RingConfig), or of a flow ring in
-        /// [`TurnSettings`](crate::flow::TurnSettings) or [`BeliefSettings`](crate::flow::BeliefSettings); or the
-        /// argument.
+        /// The name of the argument, or of the field in [`RingConfig`](crate::RingConfig),
+        /// [`TurnSettings`](crate::flow::TurnSettings) or [`BeliefSettings`](crate::flow::BeliefSettings).
         name: &'static str,
         /// The value given.
         value: u32,

@@ -27,7 +27,7 @@ impl SpeedOfSound {
     }
 
     /// Returns the speed of sound at a temperature in tenths of a degree Celsius: `343.2 sqrt(T / 293.15 K)` m/s (ISO
-    /// 9613-1), rounded down to mm/s. Below -273.1 C there is no sound.
+    /// 9613-1), rounded down to mm/s; 0 below absolute zero.
     pub const fn at_celsius_tenths(tenths: i16) -> Self {
         let kelvin_hundredths = 27_315 + 10 * tenths as i32;
         if kelvin_hundredths < 0 {
@@ -43,7 +43,7 @@ impl SpeedOfSound {
         self.mm_per_s
     }
 
-    /// The distance, in mm to the nearest, of an object whose echo came back after `t_echo`: `c t / 2`.
+    /// The distance to an object whose echo came back after `t_echo`, to the nearest mm: `c t / 2`.
     pub const fn distance_mm(self, t_echo: Micros) -> u32 {
         // At most 2^64 / 2,000,000.
         let distance = (self.mm_per_s as u64 * t_echo.as_micros() as u64 + 1_000_000) / 2_000_000;

@@ -1,9 +1,9 @@
-//! [`Survey`]: a measuring run that finds which sensors of a ring hear each other, along paths of what length.
+//! [`Survey`]: a measuring run that finds which sensors of a ring hear each other, and how long the paths are.
 //!
-//! Time is divided into slots, in each of which all earlier sound has died away. In a slot a sensor fires alone, or one
-//! fires and another some time, the *lead*, after it. An edge of the second that comes earlier by as much as the lead
-//! is longer is the first one's sound; its own echo does not move. So even a sensor that cannot listen without sending,
-//! such as an HC-SR04, can be surveyed. Each ordered pair has all leads, so both directions are measured.
+//! Time is divided into slots; earlier sound has died away before each. In a slot one sensor fires alone, or another
+//! fires some time, the *lead*, after it. If an edge of the second comes earlier by as much as the lead grows, it is
+//! sound of the first; its own echo does not move. So even a sensor that cannot listen without sending, such as an
+//! HC-SR04, can be surveyed. Each ordered pair has every lead, so both directions are measured.
 
 use crate::schedule::MAX_SENSORS;
 use crate::time::{Instant, Micros};
@@ -29,30 +29,30 @@ pub struct SurveyPlan {
     quiet: Micros,
 }
 
-/// Longest time from the first poll to a survey's beginning; an instant that seems further ahead has passed.
+/// Longest time from the first poll to a survey's beginning; an instant further ahead is taken as past.
 const FURTHEST_BEGINNING: Micros = Micros::from_millis(600_000);
 /// Largest step back of a clock that is tolerated.
 const STEP_BACK: Micros = Micros::from_millis(1000);
-/// Longest time of a survey's settings, in microseconds: ten seconds.
+/// Longest time that a setting may have, in microseconds: ten seconds.
 const LONGEST: u32 = 10_000_000;
 
 impl SurveyPlan {
-    /// Begins a survey of at most 64 sensors: each alone three times, then each ordered pair with 20 leads, 0.75 ms
-    /// from one to the next; windows of 36 ms, and 57 ms of silence, so that slots last 107.25 ms.
+    /// A plan for at most 64 sensors: each fires alone three times, then each ordered pair with 20 leads in steps of
+    /// 0.75 ms. Windows of 36 ms and 57 ms of silence make slots of 107.25 ms.
     pub const fn new(sensors: u8) -> Self {
         let sensors = if sensors as usize > MAX_SENSORS { MAX_SENSORS as u8 } else { sensors };
         let [lead_step, window, quiet] = [Micros::new(750), Micros::new(36_000), Micros::new(57_000)];
         Self { sensors, solos: 3, leads: 20, lead_step, window, quiet }
     }
 
-    /// Sets the number of firings that each sensor has alone.
+    /// Sets how many times each sensor fires alone.
     #[must_use]
     pub const fn with_solos(self, solos: u8) -> Self {
         Self { solos, ..self }
     }
 
-    /// Sets the number of leads of each ordered pair, from 0 on, and their step; at most ten seconds. A path is seen
-    /// with leads between its length less the receiver's own echo and its length: two leads must fit.
+    /// Sets the number of leads of each ordered pair, from 0 on, and their step, at most ten seconds. A path shows at
+    /// leads between its length minus the receiver's own echo and its length: at least two leads must lie there.
     #[must_use]
     pub const fn with_leads(self, leads: u8, lead_step: Micros) -> Self {
         Self { leads, lead_step: at_most_ten_seconds(lead_step), ..self }
@@ -64,7 +64,7 @@ impl SurveyPlan {
         Self { window: at_most_ten_seconds(window), quiet: at_most_ten_seconds(quiet), ..self }
     }
 
-    /// Number of sensors the ring has.
+    /// Number of sensors in the ring.
     pub const fn sensors(&self) -> u8 {
         self.sensors
     }
@@ -96,7 +96,7 @@ impl SurveyPlan {
     }
 
     const fn lead(&self, number: u8) -> Micros {
-        // Ten seconds times 255 fit.
+        // 255 times ten seconds fits.
         Micros::new(self.lead_step.as_micros().saturating_mul(number as u32))
     }
 
@@ -109,7 +109,7 @@ impl SurveyPlan {
         } else if slot < alone {
             (Some((slot % sensors) as u8), None)
         } else {
-            // Leads change slowest: what is repeated from one to the next is not what just happened.
+            // Leads change slowest, so that a passing event does not affect one pair's successive leads.
             let others = sensors - 1;
             let (lead, pair) = ((slot - alone) / (sensors * others), (slot - alone) % (sensors * others));
             let (first, other) = ((pair / others) as u8, (pair % others) as u8);
@@ -158,7 +158,7 @@ struct Listener {
     is_logged: bool,
 }
 
-/// A survey under way: the caller passes the time in, fires what it asks for, hands it the edges and logs its rows.
+/// A survey in progress: the caller passes the time, fires the sensors asked for, reports edges and logs the rows.
 ///
 /// ```
 /// use eeruf_core::{Instant, Micros, survey::{Survey, SurveyEvent, SurveyPlan}};
@@ -194,8 +194,8 @@ impl Survey {
         self.listeners = [firings.next(), firings.next()];
     }
 
-    /// Returns the next event; call again until there is none. A late poll, by up to 70 minutes less a slot, delays all
-    /// that follows; a window that has closed keeps its edge.
+    /// Returns the next event; call again until there is none. A poll up to 70 minutes minus a slot late delays all
+    /// later steps; a closed window keeps its edge.
     pub fn poll(&mut self, now: Instant) -> Option<SurveyEvent> {
         self.catch_up(now);
         let next = self.begins + self.plan.slot_length();
@@ -264,7 +264,7 @@ impl Survey {
         }
         let pending = self.listeners.iter().flatten().filter(|listener| !listener.is_logged);
         let next = self.begins + self.plan.slot_length();
-        // All of a slot lies within 2^31 us after its start.
+        // The whole slot lies within 2^31 us after its start.
         let all = pending.map(|listener| listener.due).chain([next]);
         all.min_by_key(|at| at.since(self.begins))
     }

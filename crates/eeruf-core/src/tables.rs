@@ -2,9 +2,9 @@
 //!
 //! The lags of Table I-a put groups of four neighbours 25 ms apart. All waits are 24 ms in phase a; in phase b they are
 //! 0, 2, .., 22 ms in some order, which makes the separation 2 ms (`T_delta` just below 1 ms). The order decides how
-//! close together neighbours fire: in the plain order of Tables I-b and I-c, sensors 4 and 1 come within 1 ms; that of
-//! Table I-d keeps the groups 1-4, 5-8 and 9-12 at 19 ms, and any four adjacent sensors at 17 ms. Exactly one of the
-//! 12! orders has 19 ms there too; [`THE_ONE_WITH_19_MS`] is that one.
+//! close together neighbours fire: in the plain order of Tables I-b and I-c, sensors 4 and 1 come within 1 ms; Table
+//! I-d keeps 19 ms within the groups 1-4, 5-8 and 9-12, and 17 ms within any four adjacent sensors. Exactly one of the
+//! 12! orders keeps 19 ms there too: [`THE_ONE_WITH_19_MS`].
 
 use crate::requirements::Requirements;
 use crate::schedule::{Schedule, ScheduleError};
@@ -45,8 +45,8 @@ pub const TABLE_I_C: Schedule<12> = table(Schedule::from_firing(
     [ms([24, 49, 74, 99, 24, 49, 74, 99, 24, 49, 74, 99]), ms([0, 27, 54, 81, 8, 35, 62, 89, 16, 43, 70, 97])],
 ));
 
-/// Table I-d: the same waits rearranged. 19 ms within the groups 1-4, 5-8, 9-12, as the paper says; 17 ms over any four
-/// adjacent sensors (sensors 2 and 5 in phase b).
+/// Table I-d: the same waits rearranged. Keeps 19 ms within the groups 1-4, 5-8, 9-12, as the paper says, but only 17
+/// ms within any four adjacent sensors (sensors 2 and 5 in phase b).
 pub const TABLE_I_D: Schedule<12> =
     table(Schedule::new(PERIOD, ms(T_LAG), [ms([24; 12]), ms([18, 12, 6, 0, 20, 14, 8, 2, 22, 16, 10, 4])]));
 
@@ -55,8 +55,8 @@ pub const TABLE_I_D: Schedule<12> =
 pub const THE_ONE_WITH_19_MS: Schedule<12> =
     table(Schedule::new(PERIOD, ms(T_LAG), [ms([24; 12]), ms([22, 16, 10, 4, 20, 14, 8, 2, 18, 12, 6, 0])]));
 
-/// Table I-d, verified for the largest `t_delta` that it allows, 999 us, any four adjacent sensors 17 ms apart, and the
-/// longest window, 76 ms: for [`Ring::new`](crate::Ring::new).
+/// Table I-d, verified for [`Ring::new`](crate::Ring::new): `t_delta` 999 us and window 76 ms, the largest that it
+/// allows, with any four adjacent sensors 17 ms apart.
 pub const PAPER_12: VerifiedSchedule<12> = {
     let requirements = Requirements { min_interval: Micros::from_millis(17), ..Requirements::new(Micros::new(999)) };
     match TABLE_I_D.verified(&requirements) {

@@ -79,12 +79,12 @@ impl Micros {
     }
 }
 
-/// The shorter of two times, also in a `const fn`.
+/// The shorter of two times, usable in a `const fn`.
 pub(crate) const fn shorter(one: Micros, other: Micros) -> Micros {
     if one.as_micros() < other.as_micros() { one } else { other }
 }
 
-/// The longer of two times, also in a `const fn`.
+/// The longer of two times, usable in a `const fn`.
 pub(crate) const fn longer(one: Micros, other: Micros) -> Micros {
     if one.as_micros() > other.as_micros() { one } else { other }
 }
@@ -147,7 +147,7 @@ impl Instant {
     /// assert_eq!(deadline.to_wide(now_us + 30_000), now_us + 24_000); // it has passed
     /// ```
     pub const fn to_wide(self, now_us: u64) -> u64 {
-        // As far as half a turn of the clock ahead or back.
+        // Up to half a turn of the clock ahead or back.
         now_us.saturating_add_signed(self.0.wrapping_sub(now_us as u32) as i32 as i64)
     }
 

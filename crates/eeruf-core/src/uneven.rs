@@ -4,8 +4,8 @@ use crate::requirements_error::RequirementsError;
 use crate::schedule::MAX_SENSORS;
 use crate::time::Micros;
 
-/// Needs of single sensors and pairs that differ; for anything not named here the [`Requirements`](crate::Requirements)
-/// of all hold. Sensors are counted from 0.
+/// Needs of single sensors and pairs that differ; otherwise the common [`Requirements`](crate::Requirements) hold.
+/// Sensors are counted from 0.
 ///
 /// ```
 /// use eeruf_core::{Layout, Micros, Requirements, Schedule, Uneven, conditions::ViolationKind};
@@ -19,7 +19,7 @@ use crate::time::Micros;
 /// let ms = |ms: [u32; 4]| ms.map(Micros::from_millis);
 /// let schedule = Schedule::from_firing(Micros::from_millis(60), [ms([0, 0, 31, 0]), ms([0, 2, 35, 6])])?;
 /// assert!(schedule.verify(&ring).ok());
-/// // 29 ms after the first sensor the third would hear what that one still listens for.
+/// // If the third sensor fires 29 ms after the first, that one still listens on their line.
 /// let schedule = Schedule::from_firing(Micros::from_millis(60), [ms([0, 0, 29, 0]), ms([0, 2, 33, 6])])?;
 /// let kinds: Vec<_> = schedule.verify(&ring).violations().map(|violation| violation.kind).collect();
 /// assert_eq!(kinds, [ViolationKind::SharedLine]);
@@ -29,12 +29,11 @@ use crate::time::Micros;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Uneven<'a> {
     /// `T_delta` of each sensor; empty if all have that of the requirements. Two sensors need the separation of the
-    /// larger one, since crosstalk passes both ways.
+    /// larger value, since crosstalk passes both ways.
     pub t_delta: &'a [Micros],
     /// `T_wind` of each sensor; empty if all have that of the requirements.
     pub window: &'a [Micros],
-    /// Least time between two triggers of each sensor, if later than the end of its window; empty if no sensor needs
-    /// it.
+    /// Least time between two triggers of each sensor, if longer than its window; empty if no sensor needs it.
     pub refire: &'a [Micros],
     /// Pairs of sensors with the least time between their firings, which overrides layout and common interval; 0 for
     /// none.
@@ -51,10 +50,10 @@ impl Uneven<'_> {
     pub const NONE: Self =
         Self { t_delta: &[], window: &[], refire: &[], intervals: &[], shared_lines: &[], together: &[] };
 
-    /// Checks that the needs make sense for this many sensors.
+    /// Checks that the needs are valid for this many sensors.
     ///
     /// # Errors
-    /// The first thing that does not: see [`RequirementsError`].
+    /// The first invalid need: see [`RequirementsError`].
     pub fn check(&self, sensors: usize) -> Result<(), RequirementsError> {
         for (what, each) in [("t_delta", self.t_delta), ("window", self.window), ("refire", self.refire)] {
             if !each.is_empty() && each.len() != sensors {

@@ -8,11 +8,10 @@ use crate::schedule::{Schedule, VerifiedFor};
 use crate::time::{Micros, longer, shorter};
 use crate::verify::{Violation, stale_separation};
 
-/// A [`Schedule`] with the requirements that it was verified for: [`schedule!`](crate::schedule!) makes it when the
-/// program is compiled, [`Schedule::verified`] at run time. It can replace a schedule everywhere.
+/// A [`Schedule`] with the requirements that it was verified for: [`schedule!`](crate::schedule!) makes it at compile
+/// time, [`Schedule::verified`] at run time. It can be used wherever a schedule can.
 ///
-/// `L` is [`EachSensor`] where sensors have a window and a `t_delta` of their own, which a [`Ring`](crate::Ring) then
-/// keeps one by one.
+/// `L` is [`EachSensor`] if sensors have windows and `t_delta`s of their own, which a [`Ring`](crate::Ring) then keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct VerifiedSchedule<const K: usize, const M: usize = 2, L = ()> {
@@ -34,16 +33,16 @@ impl<const K: usize, const M: usize, L> VerifiedSchedule<K, M, L> {
         self.schedule
     }
 
-    /// The limits that its sensors have of their own.
+    /// The sensors' own limits.
     pub const fn own_limits(&self) -> &L {
         &self.own_limits
     }
 
-    /// The requirements that it was verified for; if sensors have limits of their own, those that all sensors allow.
+    /// The requirements that it was verified for; if sensors have their own limits, the values that all allow.
     pub const fn verified_for(&self) -> VerifiedFor {
         match self.schedule.verified_for() {
             Some(verified_for) => *verified_for,
-            // Never: it is made with one.
+            // Unreachable: a verified schedule has requirements.
             None => VerifiedFor::NOTHING,
         }
     }
@@ -62,7 +61,7 @@ impl<const K: usize, const M: usize, L> VerifiedSchedule<K, M, L> {
 }
 
 impl<const K: usize, const M: usize> VerifiedSchedule<K, M, EachSensor<K>> {
-    /// The window and the `t_delta` of a sensor; `None` for one that is out of range.
+    /// The window and the `t_delta` of a sensor; `None` if it is out of range.
     pub fn limits_of(&self, sensor: u8) -> Option<SensorLimits> {
         self.own_limits.of(sensor).filter(|_| usize::from(sensor) < self.sensors())
     }
@@ -110,7 +109,7 @@ impl<const K: usize> Schedule<K> {
             (t_delta, min_interval, window) = requirements.strictest(schedule.sensors());
         }
         let window = if window.as_micros() == 0 { min_refire } else { window };
-        // What crosstalk moves by is the size of d_x - d_y and d_x + d_y under either criterion. Pair by pair, since
+        // Under either criterion crosstalk moves by |d_x - d_y| or |d_x + d_y|. Pair by pair, since
         // `Schedule::separation` sorts, and would leave paths to a panic in a firmware image.
         let mut separation = Micros::MAX;
         let mut x = 0;
@@ -136,7 +135,7 @@ impl<const K: usize> Schedule<K> {
         };
         let path_change = match requirements.criterion {
             Criterion::Paper | Criterion::Exact => None,
-            // Crosstalk moves by more than both together.
+            // Crosstalk moves by more than `T_delta` plus this change.
             Criterion::Margin(margin) => Some(margin.saturating_sub(Micros::new(1))),
         };
         let verified_for = VerifiedFor { t_delta, min_interval, window, separation, path_change, audible };
@@ -166,7 +165,7 @@ impl<const K: usize> Schedule<K> {
             let mut y = 0;
             while y <= x {
                 let (even, odd) = schedule.left_sides(Criterion::Exact, x, y);
-                // Its own stale echoes move by twice its |d|, if they are to be rejected.
+                // A sensor's own stale echo moves by twice its |d|, if it is to be rejected.
                 let moves = if x == y { odd } else { shorter(even, odd) };
                 let larger = longer(requirements.t_delta_of(x), requirements.t_delta_of(y));
                 if !requirements.fire_together(x, y) && (x != y || requirements.stale_echo) {

@@ -1,7 +1,7 @@
-//! The verifier: holds a [`Schedule`] against its [`Requirements`] and names every violation.
+//! The verifier: checks a [`Schedule`] against its [`Requirements`] and names every violation.
 //!
 //! Everything the search returns is checked here, by code that shares nothing with the search. Nothing is stored: a
-//! [`Verification`] borrows the schedule, and its violations are worked out while they are read.
+//! [`Verification`] borrows the schedule, and its violations are computed as they are read.
 
 use core::fmt;
 
@@ -16,8 +16,8 @@ impl<const K: usize> Schedule<K> {
     }
 }
 
-/// The findings of [`Schedule::verify`]: firing times checked against requirements. Each finding is computed when it is
-/// asked for, and none is stored.
+/// The findings of [`Schedule::verify`]: firing times checked against requirements. Findings are computed on demand,
+/// not stored.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Verification<'r, const K: usize>(TwoPhases<'r, K>);
@@ -28,13 +28,13 @@ impl<'r, const K: usize> Verification<'r, K> {
         self.first_violation().is_none()
     }
 
-    /// The least shift of crosstalk, and where it occurs: the two sensors closest together by (13a), (13b). Two that
-    /// must fire together need no separation and do not count. `None` for a single sensor.
+    /// The least shift of crosstalk by (13a), (13b), with the two sensors where it occurs. Sensors that must fire
+    /// together need no separation and do not count. `None` for a single sensor.
     pub const fn separation(&self) -> Option<Least> {
         self.0.separation()
     }
 
-    /// The least shift of a stale echo; `None` if it was not asked for.
+    /// The least shift of a stale echo; `None` if stale echoes need not be rejected.
     pub const fn stale_separation(&self) -> Option<Least> {
         self.0.stale_separation()
     }
@@ -51,7 +51,7 @@ impl<'r, const K: usize> Verification<'r, K> {
     }
 
     /// The smallest interval between neighbours or, if pairs have intervals of their own, between two sensors that need
-    /// one; `None` without any.
+    /// one; `None` if there are none.
     pub const fn min_interval(&self) -> Option<Least> {
         self.0.min_interval()
     }
@@ -225,7 +225,7 @@ pub struct Violation {
     pub phases: (Phase, Phase),
     /// The time found.
     pub value: Micros,
-    /// The least time that would suffice; for two that must fire together 0, the only one.
+    /// The least time that would suffice; 0, and only 0, for two sensors that must fire together.
     pub required: Micros,
 }
 

@@ -1,12 +1,12 @@
-//! [`SensorWatch`]: the known state of the space before each sensor, its age, and blind sensors.
+//! [`SensorWatch`]: the known state of the space in front of each sensor, its age, and blind sensors.
 
 use crate::reading::{Explanation, ReadingKind};
 use crate::ring::{Reading, RingEvent, STEP_BACK};
 use crate::sensor_error::SensorError;
 use crate::time::{Instant, Micros};
 
-/// Watches the events of a ring of up to `K` sensors: it gives the known state of the space before each, and reports
-/// sensors whose echoes are never accepted. It takes 16 bytes for each sensor and eight more.
+/// Watches the events of a ring of up to `K` sensors: it tracks what is known of the space in front of each, and
+/// reports sensors whose echoes are never accepted. It takes 16 bytes a sensor, plus eight.
 ///
 /// ```
 /// use eeruf_core::{
@@ -44,23 +44,22 @@ pub struct SensorWatch<const K: usize> {
     seen: Instant,
 }
 
-/// The state of the space before a sensor. Times stop at 2,147,483,648 us (36 minutes), which stands for all longer
-/// ones.
+/// The state of the space in front of a sensor. Times stop at 2,147,483,648 us (36 minutes).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum SensorState {
-    /// An obstacle, by an accepted or a tentative echo. One reading that does not confirm it leaves it and lets its age
-    /// grow; two in a row end it.
+    /// An obstacle, from an accepted or a tentative echo. One reading that does not confirm it only lets its age grow;
+    /// two in a row end it.
     Obstacle {
         /// The echo time.
         t_echo: Micros,
         /// Time since the last confirmation.
         age: Micros,
     },
-    /// Nothing is in range, by silence that is confirmed. Any echo ends it.
+    /// Nothing is in range: silence was confirmed. Any echo ends this state.
     Clear {
-        /// Time since that was last confirmed.
+        /// Time since silence was last confirmed.
         age: Micros,
     },
     /// Something is closer than the sensor can measure.
@@ -75,14 +74,14 @@ pub enum SensorState {
     },
     /// Nothing is known.
     Unknown {
-        /// The time for which that has been so.
+        /// How long nothing has been known.
         since: Micros,
         /// The latest reason.
         why: Doubt,
     },
 }
 
-/// Reason why nothing is known of the space before a sensor.
+/// Reason why nothing is known of the space in front of a sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -127,26 +126,26 @@ enum Known {
 const LONGEST: Micros = Micros::new(1 << 31);
 
 impl<const K: usize> SensorWatch<K> {
-    /// A watch that begins `now` and knows nothing. A sensor counts as blind after `blind_after` firings with an echo,
-    /// 1 to 255, none of which was accepted; 0 turns that off.
+    /// A watch that begins at `now` and knows nothing. A sensor counts as blind after `blind_after` firings with an
+    /// echo, 1 to 255, but no accepted reading; 0 turns this off.
     pub const fn new(blind_after: u8, now: Instant) -> Self {
         let nothing =
             Watched { known: Known::Nothing(Doubt::NoFiring), at: now, doubted: false, silent: false, echoes: 0 };
         Self { sensors: [nothing; K], blind_after, seen: now }
     }
 
-    /// Forgets all, `now`. Call it with [`Ring::restart`](crate::Ring::restart): after a long sleep the clock may have
-    /// wrapped, so that an old state would look recent.
+    /// Forgets everything, as of `now`. Call it with [`Ring::restart`](crate::Ring::restart): after a long sleep the
+    /// clock may have wrapped, so that an old state would look recent.
     pub const fn restart(&mut self, now: Instant) {
         *self = Self::new(self.blind_after, now);
     }
 
-    /// Takes in an event that a poll at `now` returned. Returns a sensor (from 0) that has just become blind; it is
-    /// returned once, and again only after something was accepted or confirmed clear.
+    /// Processes an event that a poll at `now` returned. Returns a sensor (from 0) that has just become blind: once,
+    /// and again only after one of its readings was accepted or confirmed clear.
     ///
-    /// Observe every event, or at least readings and the ends of periods, since ages are kept within what the clock can
-    /// tell there. If the clock has jumped back by more than a second since the last event, all is forgotten, as the
-    /// ring does.
+    /// Pass every event, or at least readings and ends of periods, which keep ages within the range of the clock. If
+    /// the clock has jumped back by more than a second since the last event, the watch forgets everything, like the
+    /// ring.
     pub fn observe(&mut self, event: &RingEvent, now: Instant) -> Option<u8> {
         if !(now + STEP_BACK).has_reached(self.seen) {
             self.restart(now);
@@ -171,7 +170,7 @@ impl<const K: usize> SensorWatch<K> {
         }
     }
 
-    /// Returns the state of the space before a sensor, `now`.
+    /// Returns the state of the space in front of a sensor, at `now`.
     ///
     /// # Errors
     /// [`SensorError`] for a sensor out of range.
@@ -203,7 +202,7 @@ impl Watched {
             ReadingKind::TooEarly => return self.confirm(Known::TooClose, now),
             ReadingKind::Stuck | ReadingKind::Unanswered if self.known == Known::Unanswered => return,
             ReadingKind::Stuck | ReadingKind::Unanswered => return self.confirm(Known::Unanswered, now),
-            // Of a firing that has had its reading.
+            // The firing has already had its reading.
             ReadingKind::Late if follows => return,
             ReadingKind::NoEcho if was_silent => Doubt::NoWitness,
             ReadingKind::First | ReadingKind::NoEcho | ReadingKind::Repeated | ReadingKind::Late => Doubt::Unsure,
@@ -211,7 +210,7 @@ impl Watched {
             ReadingKind::Ambiguous => Doubt::Ambiguous(reading.explained_by.unwrap_or(Explanation::History)),
         };
         match self.known {
-            // One echo may be missed, or another's heard. What is clear is so no longer with the first echo.
+            // One echo may be missed, or a foreign one heard. A clear state ends with the first echo.
             Known::Obstacle(_) if !self.doubted => self.doubted = true,
             Known::Nothing(_) => self.known = Known::Nothing(doubt),
             _ => self.confirm(Known::Nothing(doubt), now),

@@ -1,4 +1,4 @@
-//! [`Tolerance`]: when two readings are near-identical (Eq. 11), and how many consecutive ones must be.
+//! [`Tolerance`]: when two readings are near-identical (Eq. 11), and how many consecutive readings must agree.
 
 use super::echoes::NO_ECHO;
 use crate::ring_error::RingError;
@@ -39,7 +39,7 @@ impl Tolerance {
         self.consecutive.get()
     }
 
-    /// Eq. (11), after taking off the change that is expected. Silence agrees with silence.
+    /// Tests Eq. (11) after subtracting the expected change. Silence agrees with silence.
     pub(super) fn near_identical(self, echo: Micros, previous: Micros, expected_change_us: i32) -> bool {
         if echo == NO_ECHO || previous == NO_ECHO {
             return echo == previous;

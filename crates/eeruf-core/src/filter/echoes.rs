@@ -4,7 +4,7 @@ use crate::time::Micros;
 
 /// Marker of a missing echo inside this crate: longer than any listening window.
 pub(crate) const NO_ECHO: Micros = Micros::MAX;
-/// Marker of silence with a witness among stored echo times: later than any.
+/// Marker of silence with a witness among stored echo times: later than any echo.
 pub(crate) const SILENCE: Micros = Micros::new(u32::MAX - 1);
 
 /// The latest echo time that is not taken for silence.
@@ -30,14 +30,14 @@ pub(super) fn echo_time(echo: Micros) -> Option<Micros> {
     (echo != NO_ECHO).then_some(echo)
 }
 
-/// Measures echo times from a firing that was this much later; negative for earlier. Returns false if the first echo
-/// came before that firing; it then counts as simultaneous with it.
+/// Moves the origin of echo times to a firing this much later; negative for earlier. Returns false if the first echo
+/// came before that firing; such an echo then counts as simultaneous.
 pub(crate) fn shift<const E: usize>(echoes: &mut [Micros; E], later_us: i32) -> bool {
     let mut all_after = true;
     for echo in echoes.iter_mut().filter(|echo| **echo != NO_ECHO) {
         let since = i64::from(echo.as_micros()) - i64::from(later_us);
         all_after &= since >= 0;
-        // Within the range by the bounds.
+        // In range, since it is clamped.
         *echo = Micros::new(since.clamp(0, i64::from(NO_ECHO.as_micros() - 1)) as u32);
     }
     all_after

@@ -1,4 +1,4 @@
-//! [`MedianFilter`]: the middle of a sensor's last readings, a baseline.
+//! [`MedianFilter`]: the median of a sensor's last readings, a baseline.
 
 use super::echoes::{NO_ECHO, SILENCE, echo_time, shift};
 use crate::judging::{Age, Heard, Judge, Sounds};
@@ -12,7 +12,7 @@ const NOTHING: Micros = NO_ECHO;
 /// A judge that reports the median of a sensor's last three readings, or of another number up to `N`; silence counts as
 /// farther than any echo. It is a baseline: it accepts foreign sound that repeats.
 ///
-/// The echo time of a reading may be that of an earlier firing: [`Judge::stands_for`].
+/// The echo time of a reading may be that of an earlier firing: see [`Judge::stands_for`].
 ///
 /// ```
 /// use eeruf_core::{Instant, Micros, ReadingKind, judge::{FiringContext, Heard, Judge, MedianFilter, NoSounds}, Phase};

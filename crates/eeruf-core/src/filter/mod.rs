@@ -4,13 +4,13 @@
 //! |T_i - T_(i-1)| <= T_delta      (11)
 //! ```
 //!
-//! A true echo does not depend on the waits and passes; crosstalk moves by more than `T_delta` if firings kept a
-//! schedule that meets (13a), (13b), and is rejected. A [`Ring`](crate::Ring) does not rely on that: it checks whether
+//! A true echo does not depend on the waits and passes. Crosstalk is rejected, since it moves by more than `T_delta` if
+//! firings kept a schedule that meets (13a), (13b). A [`Ring`](crate::Ring) does not rely on that: it checks whether
 //! sound of another firing explains two readings that agree. If a sensor reports several echoes of one firing, all are
 //! compared, and the earliest that repeats is accepted: crosstalk that arrives before the true echo then no longer
 //! hides it.
 //!
-//! This module holds the public filter and the tracker behind it; it uses readings and times, and knows nothing of
+//! This module holds the public filter and the tracker behind it; it uses readings and times, and knows nothing about
 //! schedules.
 
 mod agreement;
@@ -84,9 +84,9 @@ impl<const K: usize, const E: usize> EchoFilter<K, E> {
     /// Judges like [`push`](Self::push), with all echoes of the firing in any order (the earliest `E` count) and the
     /// change in microseconds that a good reading is expected to show since the firing before: `-2 v dt / c` for an
     /// object approached at `v`, where `dt` is the time between the two firings (see
-    /// [`Schedule::refire_after`](crate::Schedule::refire_after)). The filter alone does not know what was fired: with
-    /// an expected change it accepts crosstalk of any schedule. [`Ring::poll_expecting`](crate::Ring::poll_expecting)
-    /// checks that too.
+    /// [`Schedule::refire_after`](crate::Schedule::refire_after)). The filter does not know what was fired: with an
+    /// expected change it accepts crosstalk under any schedule. [`Ring::poll_expecting`](crate::Ring::poll_expecting)
+    /// checks for that too.
     ///
     /// # Errors
     /// [`SensorError`] for a sensor out of range.

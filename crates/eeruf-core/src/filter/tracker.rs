@@ -6,7 +6,7 @@ use crate::judging::Explained;
 use crate::reading::{Explanation, ReadingKind, Verdict};
 use crate::time::Micros;
 
-/// The age of a sensor none of whose readings was ever accepted.
+/// The age of a sensor that has never had a reading accepted.
 const NEVER: u16 = u16::MAX;
 
 /// The echoes of one sensor's last firing; eight bytes for a sensor that reports one echo.
@@ -15,8 +15,8 @@ const NEVER: u16 = u16::MAX;
 pub(crate) struct Tracker<const E: usize> {
     /// The echoes of the firing before, earliest first; [`NO_ECHO`] means silence if its run is not zero.
     known: [Micros; E],
-    /// For each of them, the number of consecutive readings that contained it, capped at the number that must agree; 0
-    /// for no echo.
+    /// For each known echo, the number of consecutive readings that contained it, capped at the number that must agree;
+    /// 0 for none.
     runs: [u8; E],
     /// Firings since the last accepted reading.
     age: u16,
@@ -59,8 +59,8 @@ impl<const E: usize> Tracker<E> {
         let most = tolerance.consecutive();
         let earliest = latest.first().copied().unwrap_or(NO_ECHO);
         let silent = earliest == NO_ECHO;
-        // The earliest that is confirmed, or else the earliest that repeats; before there is any the first that foreign
-        // sound explains, or else the earliest.
+        // Prefer the earliest confirmed echo, then the earliest that repeats, then the first that foreign sound
+        // explains, then the earliest.
         let (mut best_run, mut best, mut matched) = (1, earliest, before.first().copied().unwrap_or(NO_ECHO));
         let mut explained_by = None;
         for (place, (&echo, now)) in latest.iter().zip(&mut self.runs).enumerate() {
@@ -121,7 +121,7 @@ impl<const E: usize> Tracker<E> {
         Verdict { kind, t_echo, previous, age: self.age(), explained_by }
     }
 
-    /// Returns true if as many firings in a row as must agree heard nothing.
+    /// Returns true if the required number of consecutive firings heard nothing.
     pub(crate) fn is_clear(&self, consecutive: Consecutive) -> bool {
         self.is_silent() && self.runs.first() == Some(&consecutive.get())
     }

@@ -8,7 +8,7 @@ use crate::reading::{Explanation, ReadingKind, Verdict};
 use crate::ring_error::RingError;
 use crate::time::{Instant, Micros};
 
-/// Longest change of a good reading since the last confirmation up to which a belief is kept.
+/// Limit, in us, on the change since the last confirmation: beyond it a belief is dropped.
 const TOO_FAR: u16 = 1_000;
 /// Age of a belief that does not exist or is too old.
 const NEVER: u16 = u16::MAX;
@@ -21,7 +21,7 @@ const NOTHING: Micros = NO_ECHO;
 struct Known<const E: usize> {
     /// The last reading, earliest echo first; or [`SILENCE`].
     last: [Micros; E],
-    /// The echo that is believed, or was last.
+    /// The echo that is believed, or was believed last.
     believed: Micros,
     /// The change in microseconds that a good reading may show since the belief was last confirmed.
     grown: u16,
@@ -31,23 +31,23 @@ struct Known<const E: usize> {
     age: u16,
     /// Firings since the belief was last confirmed; stops at 255.
     missed: u8,
-    /// Number of contradictions that the belief outlasts while the robot stands.
+    /// Number of contradictions that the belief outlasts while the robot stands still.
     conf: u8,
 }
 
 /// A judge that accepts readings that fit its belief, and two consecutive readings that agree and that nothing foreign
 /// explains.
 ///
-/// While the robot stands, farther echoes and silence must outlast the belief. While it moves, each tolerance, P
+/// While the robot stands still, farther echoes and silence must outlast the belief. While it moves, each tolerance, P
 /// included, grows with the time between two readings.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Belief<const K: usize, const E: usize = 1> {
     settings: BeliefSettings,
     motion: Motion,
-    /// True if the robot moved at the last reading, or was last said to move.
+    /// True if the robot moved at the last reading, or moves by the last report.
     moves: bool,
-    /// The quiet that the last reading asks for.
+    /// The quiet that the last reading calls for.
     quiet: Quiet,
     known: [Known<E>; K],
 }
@@ -71,7 +71,7 @@ impl<const K: usize, const E: usize> Belief<K, E> {
         Pace { moves: self.moves, every_echo: self.settings.every_echo(self.moves) }
     }
 
-    // It rarely changes, and two ask for it.
+    // Rarely needed, and called from two places.
     #[inline(never)]
     fn set_moves(&mut self, moves: bool) {
         if self.moves != moves {
@@ -82,12 +82,12 @@ impl<const K: usize, const E: usize> Belief<K, E> {
         }
     }
 
-    /// The change that a good reading may show since the one before; it also adds to the change since the belief.
+    /// Returns how much a good reading may have changed, and adds it to the change since the belief.
     fn grow(&mut self, heard: &Heard<'_>) -> Micros {
         let (rate, recent) = (self.motion.rate(heard.fired), self.motion.recent(heard.fired));
         self.set_moves(rate.moves());
         let Some(known) = self.known_mut(heard.sensor) else { return Micros::ZERO };
-        // Sound is heard a while after it was sent: the rate of then counts.
+        // Sound is heard some time after it was sent, so the rate of that time counts too.
         let span = core::mem::replace(&mut known.rate, recent).max(recent).grow(heard.since_before);
         known.grown = known.grown.saturating_add(u16::try_from(span.as_micros()).unwrap_or(u16::MAX));
         span
@@ -152,7 +152,7 @@ impl<const E: usize> Known<E> {
         explained
     }
 
-    /// Judges echoes, or silence with a witness, that may have changed by `span`. Also returns the quiet that they ask
+    /// Judges echoes, or silence with a witness, that may have changed by `span`. Also returns the quiet that they call
     /// for.
     fn judge(
         &mut self,
@@ -175,7 +175,7 @@ impl<const E: usize> Known<E> {
             }
             explained_by = explained_by.or(twice.and_then(Explained::reason));
         }
-        // Silence is farther than all that is believed.
+        // Silence counts as farther than any believed echo.
         let far = !fits && self.believed < if is_echo { time } else { NOTHING };
         let mut held_back = false;
         if stands && fits {
@@ -188,7 +188,7 @@ impl<const E: usize> Known<E> {
         let before = self.first();
         let (kind, quiet);
         if ok {
-            // The first silence in a row is no belief yet, but a robot that moves has left behind what was there.
+            // A first silence is not a belief yet, but a moving robot has left the old obstacle behind.
             let clears = is_echo || before == SILENCE || fits || !stands;
             if clears {
                 if !fits {
@@ -211,12 +211,12 @@ impl<const E: usize> Known<E> {
                 () if before >= SILENCE && !self.believes() => ReadingKind::First,
                 () => ReadingKind::Rejected,
             };
-            // Readings of a robot that moves differ anyway: quiet that did not help twice is let go, then tried again.
+            // Readings of a moving robot differ anyway: quiet that did not help twice is dropped, then tried again.
             let lets_go = !stands && !of.every_echo(true) && self.missed & 2 != 0;
             quiet = match is_echo && !far {
                 false => Quiet::Same,
                 true if !lets_go && sounds.is_masked(time) => Quiet::More,
-                // Quiet does not help against what the ring did not fire.
+                // Quiet does not help against sound that the ring did not fire.
                 true => Quiet::Less,
             };
         }
@@ -326,7 +326,7 @@ impl<const K: usize, const E: usize> Judge for Belief<K, E> {
         let Some(known) = self.known_mut(sensor).filter(|known| known.first() < SILENCE) else { return };
         shift(&mut known.last, later_us);
         if known.missed == 0 {
-            // It is an echo of that firing.
+            // The believed echo is one of that firing.
             shift(core::array::from_mut(&mut known.believed), later_us);
         }
     }

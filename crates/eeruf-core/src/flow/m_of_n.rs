@@ -1,4 +1,4 @@
-//! [`MOfN`]: m of a sensor's last n readings agree.
+//! [`MOfN`]: accepts a reading if m of the sensor's last n agree.
 
 use super::motion::{Motion, Rate};
 use crate::filter::{NO_ECHO, SILENCE, shift};
@@ -35,7 +35,7 @@ impl Vote {
     }
 }
 
-/// A sensor's state: 12 bytes a reading, and six.
+/// A sensor's state: 12 bytes a reading, plus six.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 struct Known<const N: usize> {
@@ -69,8 +69,8 @@ impl<const N: usize> Known<N> {
 }
 
 /// A judge that accepts a reading if `m` of its sensor's last `n` readings, itself included, agree with it, and nothing
-/// foreign explains any pair of them: 3 of 4 for stops and maps, 2 of 2 and 2 of 3 for less delay. `N` is the room for
-/// readings, at most five.
+/// foreign explains any pair of them. Use 3 of 4 for stops and maps, 2 of 2 or 2 of 3 for less delay. `N` is the
+/// capacity, at most five.
 ///
 /// Two readings agree if, after the change that odometry expects, they differ by at most `T_delta` plus the change that
 /// the robot's motion allows; P grows by as much. Silence agrees with silence. A single reading never suffices: an
@@ -79,8 +79,8 @@ impl<const N: usize> Known<N> {
 /// ones.
 ///
 /// It suits rings whose waits differ from firing to firing, such as flow rings: under a table of two phases every
-/// second reading has the same crosstalk. With [`Agreement`](crate::judge::Agreement) around it, it is a baseline that
-/// votes, or with 1 of 1 one that accepts every echo.
+/// second reading has the same crosstalk. Wrapped in [`Agreement`](crate::judge::Agreement), it is a voting baseline,
+/// or with 1 of 1 one that accepts every echo.
 ///
 /// ```
 /// use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, judge::MOfN};
@@ -114,15 +114,15 @@ pub struct MOfN<const K: usize, const N: usize> {
     n: u8,
     t_delta: Micros,
     motion: Motion,
-    /// True if the robot moved at the last reading, or was last said to move.
+    /// True if the robot moved at the last reading, or moves by the last report.
     moves: bool,
-    /// The quiet that the last reading asks for.
+    /// The quiet that the last reading calls for.
     quiet: Quiet,
     known: [Known<N>; K],
 }
 
 impl<const K: usize, const N: usize> MOfN<K, N> {
-    /// A judge without readings, for a robot that stands until it reports a speed.
+    /// A judge without readings, for a robot that stands still until it reports a speed.
     ///
     /// # Errors
     /// [`RingError::Setting`] unless `m` is 1 to `n`, and `n` 1 to `N`.
@@ -144,7 +144,7 @@ impl<const K: usize, const N: usize> MOfN<K, N> {
         Self { motion: Motion::new(speed_mm_s), moves: speed_mm_s > 0, ..self }
     }
 
-    /// Adds the change of this reading to the readings before.
+    /// Adds the change up to this reading to the earlier readings.
     fn grow(&mut self, heard: &Heard<'_>) {
         let (rate, recent) = (self.motion.rate(heard.fired), self.motion.recent(heard.fired));
         self.moves = rate.moves();
@@ -166,7 +166,7 @@ impl<const K: usize, const N: usize> Judge for MOfN<K, N> {
         self.grow(heard);
         let Some(known) = self.known.get_mut(usize::from(heard.sensor)) else { return heard.unjudged(None) };
         if core::mem::take(&mut known.is_held) && heard.since_before == Micros::ZERO {
-            // The silence of the firing that was held takes its place.
+            // This silence replaces the reading made while the line was held.
             known.last.rotate_left(1);
         }
         let echo = heard.echoes.first().copied().unwrap_or(SILENCE);

@@ -2,11 +2,11 @@
 //! random time in every gap. Readings are accepted if they fit the belief, or if two agree and nothing foreign explains
 //! both.
 //!
-//! A robot that moves and is alone reports every echo, with twice the least quiet: see [`Votes`]. The belief is still
-//! updated then, and decides about quiet, but only two readings in a row have the promise about one path of sound.
+//! While a robot moves alone, it reports every echo, with twice the least quiet: see [`Votes`]. The belief is still
+//! updated and decides about quiet, but the promise about one path of sound covers only two agreeing readings in a row.
 //!
 //! The plan [`InTurn`] and the judge [`Belief`] work by actual firings: a late poll costs time but breaks no promise.
-//! The proof about `twice` is in `docs/explanation/theory.md`; the remaining risks are measured.
+//! The proof for two that agree is in `docs/explanation/theory.md`; the remaining risks are measured.
 
 mod belief;
 pub(crate) mod m_of_n;
@@ -24,8 +24,8 @@ pub use belief::Belief;
 pub use plan::InTurn;
 pub use settings::{BeliefSettings, TurnSettings, Votes};
 
-/// A ring of up to `K` sensors that fires in turn, with up to `E` echoes of a firing, and remembers the last three
-/// firings of each: fewer are too few, more add nothing. `U` is [`EachSensor`](crate::EachSensor), or a reference to
+/// A ring of up to `K` sensors that fires in turn, with up to `E` echoes a firing. It remembers the last three firings
+/// of each sensor: fewer are too few, more add nothing. `U` is [`EachSensor`](crate::EachSensor), or a reference to
 /// one, if sensors have limits of their own.
 pub type FlowRing<const K: usize, const E: usize = 1, U = ()> = Ring<InTurn<K, U>, Belief<K, E>, K, E, 3>;
 

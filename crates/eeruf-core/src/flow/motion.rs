@@ -1,4 +1,4 @@
-//! [`Motion`]: by how much a good reading may change, for a robot that moves.
+//! [`Motion`]: how much a good reading may change on a moving robot.
 
 use crate::time::{Instant, Micros};
 
@@ -8,8 +8,8 @@ const AUDIBLE: Micros = Micros::from_millis(250);
 const SILENCE: Micros = Micros::from_millis(500);
 /// The longest time over which a change is computed; older beliefs are dropped.
 const LONGEST: u32 = (1 << 20) - 1;
-/// Inverse of a metre, the distance of a sensor from the centre about which the robot turns: with the range, the lever
-/// at which a wall moves.
+/// Divisor of a metre that gives the assumed distance of a sensor from the robot's centre of rotation, 0.5 m, at which
+/// a turn moves it.
 const PART_OF_A_METRE: u32 = 2;
 
 /// Change of an echo for a moving robot, in 1/16 us per 1,024 us.
@@ -19,9 +19,9 @@ pub(super) struct Rate(u16);
 
 impl Rate {
     pub(super) const STANDING: Self = Self(0);
-    /// `2 v / c` at 331 m/s, the slowest sound that a robot meets, plus 6 %, since at 3.6 m/s the intervals between
-    /// sending exceed those between hearing by that much: `2 v / 331 * 1.024 * 16 * 1.06` of a `v` in mm/s, rounded up.
-    /// Readings change by at most 4,095/16 us per 1,024 us.
+    /// The rate at a speed `v` in mm/s, rounded up: `2 v / 331 * 1.024 * 16 * 1.06`, at most 4,095. Sound is never
+    /// slower than 331 m/s where robots are. The 6 % are for intervals between sendings, which at 3.6 m/s exceed those
+    /// between hearings by that much.
     const fn of(speed_mm_s: u32) -> Self {
         // A Cortex-M0 divides by a power of two without a call.
         let speed = if speed_mm_s > 39_000 { 39_000 } else { speed_mm_s };
@@ -47,7 +47,7 @@ pub(super) struct Motion {
     top: Rate,
     /// Time when the caller last reported the speed; `None` if not within [`SILENCE`].
     told: Option<Instant>,
-    /// The greatest rates in the spans before and after `since`, neither much shorter than sound is audible.
+    /// The greatest rates before and after `since`, each over a span not much shorter than sound is audible.
     greatest: [Rate; 2],
     since: Instant,
 }
@@ -61,7 +61,7 @@ impl Motion {
     /// Stores how fast the robot moves from now on. Returns the greater of the rates before and after.
     pub(super) fn set(&mut self, speed_mm_s: u32, turn_mrad_s: u32, now: Instant) -> Rate {
         if !now.has_reached(self.since) {
-            // The first word of a clock in its upper half, or a clock that has jumped.
+            // The first report of a clock in its upper half, or a clock that has jumped.
             (self.since, self.greatest) = (now, [self.greatest[0].max(self.greatest[1]), Rate::STANDING]);
         }
         let before = self.recent(now);
@@ -71,8 +71,8 @@ impl Motion {
         before.max(self.rate)
     }
 
-    /// The greatest rate during the time in which sound heard at an instant could be sent; the instant is not long
-    /// before the last report.
+    /// The greatest rate during the time in which sound heard at `now` could have been sent; `now` is not long before
+    /// the last report.
     pub(super) fn recent(&mut self, now: Instant) -> Rate {
         let rate = self.rate(now);
         if now.has_reached(self.since) && now.since(self.since) > AUDIBLE {
@@ -114,7 +114,7 @@ mod tests {
         motion.set(0, 0, begin);
         assert_eq!(motion.rate(begin + Micros::from_millis(500)), Rate::STANDING);
         assert_eq!(motion.clone().rate(begin + Micros::new(500_001)), top);
-        // It held before the next word.
+        // The top speed applied until the next report.
         assert_eq!(motion.set(0, 500, begin + Micros::new(600_000)), top);
         assert_eq!(motion.rate(begin + Micros::new(600_001)), Rate::of(250));
     }

@@ -48,7 +48,7 @@ impl Slot {
     }
 }
 
-/// A plan that fires one sensor after the other, far ones in turn.
+/// A plan that fires one sensor after the other, alternating between distant ones.
 ///
 /// A sensor fires a random time after three conditions hold: its own quiet has passed since the last firing, the quiet
 /// of all sensors that still await their edge has passed, and it has rested. Sensors that fire together share a turn,
@@ -80,7 +80,7 @@ pub struct InTurn<const K: usize, U = ()> {
     thrown: Micros,
     random: u32,
     window: Micros,
-    /// Least quiet of a robot that stands or is among others, and greatest quiet.
+    /// Least quiet, for a robot that stands still or is near others, and greatest quiet.
     least: Micros,
     most: Micros,
     rest: Micros,
@@ -183,7 +183,7 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
             place += 1;
         }
         plan.throw();
-        // As `decide` does: the first in order is the first.
+        // As `decide` does: sensor 0 is the first in the order.
         let after = longer(Micros::new(first as u32 * UNIT), plan.least()).as_micros() + plan.thrown.as_micros();
         plan.due = Instant::from_micros(now.as_micros().wrapping_add(after));
         Ok(plan)
@@ -227,7 +227,7 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
         (0..self.sensors).zip(&self.slots)
     }
 
-    /// Returns true if another enabled sensor fires together with those of a group.
+    /// Returns true if a sensor is enabled and belongs to the group.
     fn is_with(&self, other: u8, group: u8) -> bool {
         group > 0 && self.own_limits.group_of(other) == group && self.is_enabled(other)
     }
@@ -252,7 +252,7 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
         }
         for (sensor, slot) in self.each() {
             if slot.is(LISTENS) {
-                // Sound after its window is of no account, however late it is reported.
+                // Sound after the window does not matter, however late it is reported.
                 let quiet = self.since_last(slot.fired, shorter(self.quiet(slot), self.window_of(sensor)));
                 if quiet > all.most {
                     all = Listeners { most: quiet, whose: sensor, others: all.most };
@@ -310,7 +310,7 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
         self.decide_no_sooner();
     }
 
-    /// The time from the last firing to `after` another instant.
+    /// The time from the last firing of the plan until `after` past this one; zero if that has passed.
     fn since_last(&self, fired: Instant, after: Micros) -> Micros {
         let until = fired + after;
         if self.last.has_reached(until) { Micros::ZERO } else { until.since(self.last) }
@@ -325,7 +325,7 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
         self.due_from(due);
     }
 
-    /// Decides who fires next, and when.
+    /// Decides which sensor fires next, and when.
     #[inline(never)]
     fn decide(&mut self) {
         let listeners = self.listeners();
@@ -352,7 +352,7 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
                 if self.turn == NOBODY {
                     self.turn = sensor;
                 }
-                // Nobody is passed over twice: only while no other sensor has fired ahead.
+                // No sensor is passed over twice: only one may fire ahead in a round.
                 if rested <= quiet || self.ahead != NOBODY {
                     return;
                 }
@@ -360,7 +360,7 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
             sensor = then;
         }
         if self.turn == NOBODY {
-            // The round ends at once, and if nobody fires after the time for which one would rest.
+            // The round ends at once or, if no sensor can fire, after the rest time.
             let nobody = self.paused || !self.each().any(|(_, slot)| !slot.is(DISABLED));
             self.due = self.last + if nobody { self.rest } else { Micros::ZERO };
         }
@@ -376,8 +376,8 @@ struct Listeners {
     others: Micros,
 }
 
-/// The sensor at a place of the order: far ones in turn, so that neighbours never follow each other if the number of
-/// sensors allows it.
+/// The sensor at a place of the order, which alternates between distant sensors: neighbours never follow each other if
+/// the number of sensors allows it.
 const fn in_order(place: u8, sensors: u8) -> u8 {
     const SIX: [u8; 6] = [0, 2, 4, 1, 5, 3];
     match sensors {
@@ -463,7 +463,7 @@ impl<const K: usize, U: OwnLimits> Plan for InTurn<K, U> {
         // The one that fired ahead has had its turn.
         (self.from, self.ahead) = (0, NOBODY);
         if self.next == NOBODY && now.since(self.last) >= self.rest {
-            // Nobody fires: rounds go on.
+            // No sensor fires, but rounds go on.
             self.last = now;
         }
         self.decide_no_sooner();
@@ -546,7 +546,7 @@ impl<const K: usize, U: OwnLimits> Plan for InTurn<K, U> {
     fn restart(&mut self, now: Instant) {
         let first = self.first;
         for slot in &mut self.slots {
-            // A clock that has jumped says nothing of when they fired.
+            // After a jump of the clock, it is unknown when they fired.
             let rests = slot.is(FIRED) && now.has_reached(slot.fired) && now.since(slot.fired) <= self.rest;
             slot.set(FIRED, rests);
             slot.set(LISTENS | PENDING, false);
@@ -614,7 +614,7 @@ mod tests {
             assert_eq!(sorted, (0..sensors).collect::<Vec<_>>());
             let pairs = order.iter().zip(order.iter().cycle().skip(1));
             let apart = |(one, other): (&u8, &u8)| one.abs_diff(*other).min(sensors - one.abs_diff(*other));
-            // Six come round with two that are neighbours.
+            // With six sensors the order wraps around from one to its neighbour.
             assert!(pairs.filter(|pair| apart(*pair) < 2).count() <= usize::from(sensors == 6), "{order:?}");
         }
     }

@@ -17,15 +17,15 @@ pub(super) const LONGEST_REST: Micros = Micros::from_millis(4_000);
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct TurnSettings {
-    /// The least time from one firing to the next, at least 100 us, for a robot that stands or is among others; twice
-    /// as much if every echo is reported.
+    /// The least time from one firing to the next, at least 100 us; doubled while every echo is reported (see
+    /// [`Votes`]).
     pub least: Micros,
     /// R: the greatest quiet, and how long sound is heard, its tail included. 1 to 250 ms.
     pub most: Micros,
     /// The least time between two firings of a sensor, which its module needs to rest. 1 ms to 4 s.
     pub rest: Micros,
-    /// Random time in every gap, from 0 to this while the robot stands, and to twice this while it moves. At least
-    /// eight ticks of the clock, so 8 us or none, or chance explains readings that agree.
+    /// Longest random time in a gap while the robot stands still; twice as long while it moves. 0, or at least 8 us
+    /// (eight ticks of the clock): with less, chance explains readings that agree.
     pub dice: Micros,
     /// The seed of the random gaps, not 0 and different on each robot, such as the chip's number.
     pub seed: u32,
@@ -60,10 +60,10 @@ impl TurnSettings {
 
     /// The limits of each sensor for [`FlowRing::with_limits`](crate::flow::FlowRing::with_limits): its window, its
     /// `t_delta` (at most that of the belief), the sensors with which it fires together, such as those on one trigger
-    /// line, and those with which it shares an echo line. All other requirements apply to tables.
+    /// line, and those with which it shares an echo line. All other requirements apply only to tables.
     ///
     /// # Errors
-    /// [`RequirementsError`] if what single sensors need is invalid for this many sensors.
+    /// [`RequirementsError`] if the needs of single sensors are invalid for this many sensors.
     pub fn limits<const K: usize>(
         sensors: usize,
         requirements: &Requirements<'_>,
@@ -112,11 +112,11 @@ impl TurnSettings {
     }
 }
 
-/// The number of consecutive echoes that make one accepted.
+/// The number of consecutive echoes needed to accept one.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Votes {
-    /// One while the robot moves and is alone, else two.
+    /// One while the robot moves and no other is near, else two.
     ByMotion,
     /// One: every echo is accepted, with twice the least quiet. Only quiet keeps foreign echoes out.
     EveryEcho,
@@ -128,28 +128,28 @@ pub enum Votes {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct BeliefSettings {
-    /// `T_delta`: greatest difference of two consecutive readings that agree, for a robot that stands.
+    /// `T_delta`: greatest difference between two consecutive readings that agree, on a stationary robot.
     pub t_delta: Micros,
-    /// H: greatest difference of a reading from the belief, for a robot that stands. For an edge between two instants
+    /// H: greatest difference between a reading and the belief, on a stationary robot. For an edge between two instants
     /// the middle counts, since no promise covers a reading that fits.
     pub near: Micros,
-    /// P: the largest change of a foreign path between two readings of a robot that stands.
+    /// P: the largest change of a foreign path between two readings of a stationary robot.
     pub path_change: Micros,
     /// Number of firings without confirmation after which a belief ends.
     pub memory: u8,
-    /// Greatest number of confirmations that count: as many contradictions must come before a farther echo, or silence,
-    /// replaces the belief of a robot that stands.
+    /// Greatest number of confirmations that count: on a stationary robot, that many contradictions must come before a
+    /// farther echo or silence replaces the belief.
     pub hold: u8,
     /// The assumed speed of a robot that reports none, in mm/s: 0, or at least 10.
     pub top_speed_mm_s: u16,
     /// True if no other robot sends sound nearby.
     pub alone: bool,
-    /// Number of consecutive echoes that make one accepted.
+    /// Number of consecutive echoes needed to accept one.
     pub votes: Votes,
 }
 
 impl BeliefSettings {
-    /// Settings for a robot that stands unless it reports a speed.
+    /// Settings for a robot that stands still unless it reports a speed.
     pub const DEFAULT: Self = Self {
         t_delta: Micros::new(80),
         near: Micros::new(150),

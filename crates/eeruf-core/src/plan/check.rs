@@ -14,7 +14,7 @@ use crate::time::{Instant, Micros};
 #[non_exhaustive]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum BrokenPromise {
-    /// The plan fires a sensor that it does not have, that is disabled, or that has not stopped listening within the
+    /// The plan fires a sensor that it does not have, that is disabled, or that may still be listening within the
     /// longest window.
     WrongSensor {
         /// The sensor, from 0.
@@ -71,8 +71,8 @@ impl fmt::Display for BrokenPromise {
 impl core::error::Error for BrokenPromise {}
 
 /// Runs a plan for `polls` polls from `now` on under harder conditions than a ring's: late polls, late firings, sensors
-/// that are disabled and enabled, restarts, and readings that are never accepted. It is for tests of your own [`Plan`];
-/// `seed` fixes the calls.
+/// that are disabled and enabled, restarts, and readings that are never accepted. Use it to test your own [`Plan`];
+/// `seed` makes the calls reproducible.
 ///
 /// ```
 /// use eeruf_core::{Instant, plan::{ScheduledFiring, check_plan}, tables::TABLE_I_D};
@@ -99,7 +99,7 @@ struct Seen {
     /// Time when the sensor stops listening; `None` if it has stopped.
     ends: Option<Instant>,
     disabled: bool,
-    /// Time since when the sensor could have fired.
+    /// Time from which the sensor could have fired.
     waits_since: Option<Instant>,
 }
 
@@ -180,7 +180,7 @@ impl Check {
 
     /// Ends the windows that are over.
     fn end_until<P: Plan>(&mut self, plan: &mut P, until: Instant) {
-        // It believes nothing.
+        // A judge that accepts nothing.
         let Ok(judge) = EchoFilter::<0>::new(Micros::new(1), 2) else { return };
         for (x, seen) in (0..).zip(&mut self.seen) {
             if let (Some(at), Some(fired)) = (seen.ends, seen.fired) {

@@ -34,7 +34,7 @@ pub struct PlanLimits<'s> {
 }
 
 /// Decides when each sensor of a ring fires: [`ScheduledFiring`](super::ScheduledFiring),
-/// [`ImmediateRefiring`](super::ImmediateRefiring), [`InTurn`](crate::flow::InTurn), or one of the caller's own.
+/// [`ImmediateRefiring`](super::ImmediateRefiring), [`InTurn`](crate::flow::InTurn), or one of your own.
 pub trait Plan {
     /// The next firing that is due, for a plan that runs without a ring; periods end by themselves. Call again until
     /// there is none.
@@ -65,13 +65,13 @@ pub trait Plan {
         let due = self.deadline();
         self.next_firing().map(|(sensor, phase)| Upcoming { sensor, phase, due }).into_iter()
     }
-    /// Fires that sensor, `now`. Call it when the firing is due.
+    /// Fires the next sensor, at `now`. Call it when the firing is due.
     fn fire(&mut self, now: Instant);
     /// Notes that a sensor fired this much later than [`fire`](Self::fire) was called for: all that depends on its
     /// firing moves by as much, and no interval to come gets shorter.
     fn postpone(&mut self, sensor: u8, by: Micros);
-    /// Ends the period, `now`, and returns its phase. The flag is true if the next period does not follow as scheduled,
-    /// because another schedule begins or periods were skipped. Call it when the end is due.
+    /// Ends the period at `now` and returns its phase. The flag is true if the next period does not follow as
+    /// scheduled, because another schedule begins or periods were skipped. Call it when the end is due.
     fn end_period(&mut self, now: Instant) -> (Phase, bool);
     /// Notes a sensor's reading with its verdict, and the judge, for plans that depend on beliefs.
     fn judged(&mut self, _heard: &Heard<'_>, _verdict: &Verdict, _judge: &impl Judge) {}
@@ -79,7 +79,7 @@ pub trait Plan {
     fn fired(&mut self, _sensor: u8, _at: Instant) {}
     /// Notes that a sensor stopped listening `at` this instant: its echo came in, or its window closed.
     fn ended(&mut self, sensor: u8, at: Instant);
-    /// The instant before which the next firing was not due, judging by the last call: lateness counts from it.
+    /// Sets the instant from which lateness of the next firing counts: before the last call it was not due any sooner.
     fn due_from(&mut self, _soonest: Instant) {}
     /// Forgets a sensor's readings, and all that depends on them.
     fn forget(&mut self, _sensor: u8) {}
@@ -91,7 +91,7 @@ pub trait Plan {
     fn set_paused(&mut self, paused: bool);
     /// Returns true if a sensor is enabled, whether or not the plan is paused.
     fn is_enabled(&self, sensor: u8) -> bool;
-    /// Sets the robot's motion.
+    /// Tells the plan how the robot moves.
     fn set_pace(&mut self, _pace: Pace) {}
     /// Starts again with phase a, at `now` or later.
     fn restart(&mut self, now: Instant);

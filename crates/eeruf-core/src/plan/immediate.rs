@@ -10,8 +10,8 @@
 //! T_err,b = T_echo + T_x,b - T_y,b                                                  (10b)
 //! ```
 //!
-//! With (8) the filter takes it for a true echo. With (10a), (10b) consecutive readings differ, and the filter rejects
-//! them.
+//! With (8) the filter takes crosstalk for a true echo. With (10a), (10b) consecutive readings differ, and the filter
+//! rejects them.
 
 use core::ops::Deref;
 
@@ -188,7 +188,7 @@ impl<T: Deref<Target = Schedule<K, M>>, const K: usize, const M: usize> Plan for
         let longest = self.min_refire.max(self.schedule.period());
         for (x, turn) in self.sensors.iter_mut().enumerate() {
             let mut at = now + self.schedule.t_fire(Phase::A, x).unwrap_or(Micros::ZERO);
-            // One that has fired and ended waits for its refire time already.
+            // A sensor that has stopped listening already waits for its refire time.
             let listens = self.listening.contains(x as u8);
             let soonest = if listens { turn.at + self.min_refire } else { turn.at };
             if soonest.has_reached(at) && soonest.since(now) <= longest {
@@ -207,7 +207,7 @@ impl<T: Deref<Target = Schedule<K, M>>, const K: usize, const M: usize> Plan for
     }
 
     fn limits(&self) -> PlanLimits<'_> {
-        // It fires only what has ended.
+        // It fires only sensors that have stopped listening.
         PlanLimits { longest_window: Micros::MAX, verified_for: None, audible: None }
     }
 

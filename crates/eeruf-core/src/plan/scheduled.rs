@@ -29,7 +29,7 @@ use crate::verified::VerifiedSchedule;
 /// schedules, the lesser of both.
 pub type ScheduledFiring<'s, const K: usize, const M: usize = 2, U = ()> = TableFiring<&'s Schedule<K, M>, K, M, U>;
 
-/// [`ScheduledFiring`] by any pointer `T` to a [`Schedule`]: with `&Schedule` it borrows, with an `Arc` it owns, so
+/// [`ScheduledFiring`] with any pointer `T` to a [`Schedule`]: with `&Schedule` it borrows, with an `Arc` it owns, so
 /// that it can be cloned and outlive the schedule's creator.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -161,7 +161,7 @@ impl<T: Deref<Target = Schedule<K, M>>, const K: usize, const M: usize, U: OwnLi
         self.due += gap;
     }
 
-    /// The time when a period may begin that was not verified against earlier firings.
+    /// The earliest start of a period that was not verified against earlier firings.
     fn settled(&self) -> Instant {
         self.last_fired + settling_time(&*self.schedule)
     }
@@ -177,13 +177,13 @@ impl<T: Deref<Target = Schedule<K, M>>, const K: usize, const M: usize, U: OwnLi
     }
 }
 
-/// Returns true if a number in the firing order is a sensor's. Unused room of a schedule has none.
+/// Returns true if an entry of the firing order is a sensor; unused entries are not.
 const fn is_sensor<const K: usize>(sensor: u8) -> bool {
     (sensor as usize) < K && (sensor as usize) < MAX_SENSORS
 }
 
-/// Silence after the last firing before a period may begin that was not verified against it. For an unverified schedule
-/// it is a whole period: two neighbours fire within one, so no interval can be longer.
+/// Silence needed between the last firing and a period that was not verified against it. For an unverified schedule it
+/// is a whole period: two neighbours fire within one, so no interval can be longer.
 const fn settling_time<const K: usize, const M: usize>(schedule: &Schedule<K, M>) -> Micros {
     match schedule.verified_for() {
         Some(verified_for) => longer(verified_for.min_interval, schedule.min_refire()),
@@ -313,7 +313,7 @@ impl<T: Deref<Target = Schedule<K, M>>, const K: usize, const M: usize, U: OwnLi
         // A clock that has jumped says nothing about when the last firing was.
         let soon = !now.has_reached(settled) && settled.since(now) <= self.horizon();
         if !soon {
-            // No last firing is further back than matters: the clock may jump again.
+            // The last firing is kept no further back than matters, since the clock may jump again.
             self.last_fired =
                 Instant::from_micros(now.as_micros().wrapping_sub(settling_time(&*self.schedule).as_micros()));
         }

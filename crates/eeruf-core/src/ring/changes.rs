@@ -45,7 +45,7 @@ where
     /// # Errors
     /// Those of [`change_schedule`](Ring::change_schedule); [`RingError::Window`] if a sensor would fire too soon.
     pub fn change_to(&mut self, schedule: T, own_limits: U) -> Result<(), RingError> {
-        // As if it began with that schedule.
+        // Checked as if the ring began with that schedule.
         let begun = TableFiring::holding(schedule.clone(), own_limits, Instant::from_micros(0));
         Listening::checked(self.t_delta(), self.window(), self.blanking(), &begun)?;
         self.plan.change_to(schedule, own_limits);
@@ -165,7 +165,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         Ok(())
     }
 
-    /// Lets a sensor fire again from its next turn on. Its readings from before are forgotten.
+    /// Lets a sensor fire again from its next turn on. Its earlier readings are forgotten.
     ///
     /// # Errors
     /// [`SensorError`] for a sensor out of range.
@@ -180,9 +180,9 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         Ok(())
     }
 
-    /// Lets no sensor fire until [`resume`](Self::resume). Readings of firings under way are still emitted; periods go
-    /// on, so that a deadline still comes once a period. For a longer sleep do not poll, and [`restart`](Self::restart)
-    /// after it.
+    /// Stops all sensors from firing until [`resume`](Self::resume). Readings of firings under way are still emitted;
+    /// periods go on, so that a deadline still comes once a period. For a longer sleep do not poll, and
+    /// [`restart`](Self::restart) after it.
     pub fn pause(&mut self) {
         self.plan.set_paused(true);
     }
@@ -207,7 +207,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         self.known_from = now;
         let sensors = self.sensors();
         for sensor in self.sensors.iter_mut().take(sensors) {
-            // One that was said to fire a little later still does.
+            // A firing corrected to an instant just ahead is still known.
             if is_just_ahead(sensor.fired(), self.known_from) {
                 self.known_from = sensor.fired();
             }

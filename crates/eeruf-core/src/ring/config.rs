@@ -5,12 +5,12 @@ use crate::plan::Plan;
 use crate::ring_error::RingError;
 use crate::time::Micros;
 
-/// The meaning of silence: of a firing without an echo whose sensor has not shown that it listened
+/// The meaning of silence: a firing without an echo whose sensor has not shown that it listened
 /// ([`Ring::answered`](super::Ring::answered), [`Ring::measured`](super::Ring::measured)).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Silence {
-    /// Never free space and no fault: it stays [`NoEcho`](crate::ReadingKind::NoEcho), however often.
+    /// Neither free space nor a fault: always [`NoEcho`](crate::ReadingKind::NoEcho), however often it repeats.
     #[default]
     NeverFree,
     /// A fault, [`Unanswered`](crate::ReadingKind::Unanswered), for drivers whose sensors show that they listen, for
@@ -35,13 +35,13 @@ pub enum Silence {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RingConfig<const E: usize = 1> {
-    /// `T_delta`: the greatest difference of near-identical consecutive readings. `None` for that of the verified
+    /// `T_delta`: the greatest difference between near-identical consecutive readings. `None` for that of the verified
     /// schedule.
     pub t_delta: Option<Micros>,
     /// `T_wind`: how long a sensor listens after it has fired. An echo at exactly this time still counts. `None` for
     /// that of the verified schedule.
     pub window: Option<Micros>,
-    /// Time after a firing in which edges are ringing of the transducer, not echoes.
+    /// Time after a firing in which edges count as ringing of the transducer, not as echoes.
     pub blanking: Micros,
     /// The number of consecutive readings that must agree, 2 to 8.
     pub consecutive: u8,
@@ -50,8 +50,8 @@ pub struct RingConfig<const E: usize = 1> {
     /// needs the jitter plus `2 v dt / c`. A value below `T_delta` makes fewer readings ambiguous if firings are late.
     /// At most 65,534 us.
     pub path_change: Option<Micros>,
-    /// R: how long sound is audible after its firing. `None` for that of the verified schedule, its period unless more
-    /// was asked for; with immediate refiring, the listening time or the least refire time. 1 ms to 67 s.
+    /// R: how long sound is audible after its firing. `None` for that of the verified schedule; without one, the period
+    /// or, with immediate refiring, the listening time or the least refire time. 1 ms to 67 s.
     pub audible: Option<Micros>,
 }
 

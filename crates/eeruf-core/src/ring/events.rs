@@ -38,7 +38,7 @@ pub struct Reading {
     pub kind: ReadingKind,
     /// The echo time; `None` without echo.
     pub t_echo: Option<Micros>,
-    /// The echo time compared with.
+    /// The echo time that it was compared with.
     pub previous: Option<Micros>,
     /// Number of firings since this sensor's last accepted reading; `None` if none ever was.
     pub age: Option<u16>,
@@ -52,13 +52,13 @@ pub struct Reading {
 pub struct PeriodStats {
     /// The period, counted from 0.
     pub period: u32,
-    /// The readings emitted since the previous period ended, by kind.
+    /// The phase of the period.
     pub phase: Phase,
     /// The readings emitted since the period before ended, by kind.
     pub tally: Tally<u8>,
     /// Greatest lateness of the period's firings and its end, from due to polled, at most 65,535 us. If a reading
     /// brings a firing forward, lateness counts from the poll that returned the reading.
     pub max_late: Micros,
-    /// Sum of the lateness of all its firings, by which the timetable got longer; at most 65,535 us.
+    /// Sum of the lateness of the period's firings, by which the timetable got longer; at most 65,535 us.
     pub sum_late: Micros,
 }

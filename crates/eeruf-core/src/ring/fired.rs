@@ -8,8 +8,8 @@ use crate::sensor_error::SensorError;
 use crate::time::Instant;
 
 impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, J, K, E, H> {
-    /// Corrects the instant at which a sensor last fired: for example to a time that a timer captured, or for a delay
-    /// of its circuit. Optional: without it the `now` of the poll counts.
+    /// Corrects the instant at which a sensor last fired: for example to a time that a timer captured, or to allow for
+    /// a delay in its circuit. Optional: without it the `now` of the poll counts.
     ///
     /// Echo times count from `at`. If it is later than the poll, the lateness of the firing grows, and all later
     /// firings move by as much, so that no interval gets shorter. Call it before you poll for readings that may contain
@@ -26,7 +26,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         }
         let (later_us, listens) = (fired.correct(at), fired.is(LISTENING));
         if !listens {
-            // Its reading is with the judge already.
+            // Its reading was already judged.
             self.judge.fired_later(sensor, later_us);
         }
         self.plan.fired(sensor, at);

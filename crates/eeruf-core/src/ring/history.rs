@@ -1,16 +1,16 @@
 //! [`Pair`]: whether one path of sound explains two consecutive readings of a sensor.
 //!
-//! Eqs. (11) and (13) on what was fired instead of on what was planned. A receiver fired at `f1` and `f2` and heard
+//! Eqs. (11) and (13), applied to actual instead of planned firings. A receiver fired at `f1` and `f2` and heard
 //! something at `h1 = f1 + e1` and `h2 = f2 + e2`. Sensor x explains both readings if it fired at `a` and `b`, and
 //!
 //! ```text
 //! 0 <= h1 - a <= R,   0 <= h2 - b <= R,   |(h2 - b) - (h1 - a)| <= P
 //! ```
 //!
-//! `h - a` is the length, in time, that a path from x would have; R is how long sound is audible, and P is by how much
-//! a path may change between the two readings. For the receiver itself `a = f1` and `b = f2` do not count: these are
-//! the echoes that it is meant to hear. A single path of sound that changes by at most P is among those tried, whenever
-//! and for whatever reason its emitter fired: `docs/explanation/theory.md` section 2.1.
+//! `h - a` is the length, in time, that a path from x would have; R is how long sound is audible, and P is the most
+//! that a path may change between the two readings. For the receiver itself `a = f1` and `b = f2` do not count: these
+//! are the echoes that it is meant to hear. A single path of sound that changes by at most P is among those tried,
+//! whenever and for whatever reason its emitter fired: `docs/explanation/theory.md` section 2.1.
 
 use crate::time::{Instant, Micros};
 
@@ -40,7 +40,7 @@ impl<const H: usize> Firings<H> {
 
     #[inline]
     pub(super) fn push(&mut self, now: Instant) {
-        // Without a loop, in a third of the instructions.
+        // Unrolled: a third of the instructions of a loop.
         match self.0.as_mut_slice() {
             [last, a, b, c] => (*last, *a, *b, *c) = (now, *last, *a, *b),
             [last, a, b] => (*last, *a, *b) = (now, *last, *a),
@@ -72,7 +72,7 @@ impl<const H: usize> Firings<H> {
         [Some(self.0[0]), self.0.get(usize::from(ago)).copied()]
     }
 
-    /// The time from the last firing but one to the last.
+    /// The time from the second-to-last firing to the last.
     pub(super) fn since_before(&self) -> Micros {
         self.0.get(1).map_or(Micros::MAX, |&before| self.last().since(before))
     }
@@ -81,14 +81,14 @@ impl<const H: usize> Firings<H> {
     pub(super) fn is_heard_at(&self, at: Instant, audible: Micros, but: usize) -> bool {
         for &fired in self.0.iter().skip(but) {
             if at.has_reached(fired) {
-                // The latest that had fired then: what fired before it is heard no longer than it is.
+                // The latest firing until then decides: earlier ones are not heard for longer.
                 return at.since(fired) <= audible;
             }
         }
         false
     }
 
-    /// Returns true if an instant is later than the last firing but one, as far as that is known.
+    /// Returns true if an instant is later than the second-to-last firing, or if that is unknown.
     pub(super) fn may_correct(&self, at: Instant) -> bool {
         self.0.get(1).is_none_or(|&before| at != before && at.has_reached(before))
     }
@@ -135,8 +135,8 @@ pub(super) struct Pair {
 }
 
 impl Pair {
-    /// Returns true if sound of these firings explains both readings. `own` marks the receiver's own firings: the last
-    /// does not count for the second reading, and the one at this place not for the first.
+    /// Returns true if sound of these firings explains both readings. `own` marks the receiver's own firings: its last
+    /// does not count for the second reading, nor the one at this place for the first.
     // Out of line, where it has all registers of a Cortex-M0 to itself.
     #[inline(never)]
     pub(super) fn explains<const H: usize>(&self, firings: &Firings<H>, own: Option<u8>) -> bool {
@@ -154,7 +154,7 @@ impl Pair {
             };
             // Both are below a minute, and the change below 66 ms: neither sum nor difference wraps twice.
             let shortest = length_before.as_micros().wrapping_sub(path_change.as_micros());
-            // The later of two firings is before the earlier here; both may be one if the readings are so close.
+            // Later firings have lower indices; both may be the same one if the readings are that close.
             for later in latest..earlier + 1 {
                 let length = second.since(firings.0[later]);
                 let changed = length.as_micros().wrapping_sub(shortest);
@@ -166,8 +166,8 @@ impl Pair {
         false
     }
 
-    /// Widens the tolerances for echo times that may be off by `one` and `other`, and a later echo by up to `third`:
-    /// each length by the greatest of them, the change by the sum of the first two.
+    /// Widens the tolerances for echo times that may be off by `one` and `other`, and none by more than `most`: each
+    /// length by `most` either way, the change by `one` plus `other`.
     pub(super) fn widened(self, one: Micros, other: Micros, most: Micros) -> Self {
         let change = self.path_change.saturating_add(one).saturating_add(other);
         let audible = self.audible.saturating_add(most).saturating_add(most);
@@ -177,7 +177,7 @@ impl Pair {
     /// Returns true if sound from before this instant could be in the first reading.
     pub(super) fn is_audible_from(&self, instant: Instant) -> bool {
         let [first, _] = self.heard;
-        // An instant after the first reading leaves all before it open: its age is negative.
+        // For an instant after the first reading, the age is negative and the answer true.
         (first.since(instant).as_micros() as i32) < self.audible.as_micros() as i32
     }
 }

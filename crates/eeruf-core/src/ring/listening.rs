@@ -55,7 +55,7 @@ impl Listening {
         Ok(Self { audible, path_change, ..self })
     }
 
-    /// Returns a changed copy after checking it.
+    /// Checks listening times against the limits of a plan.
     pub(super) fn checked<P: Plan>(
         t_delta: Micros,
         window: Micros,
@@ -86,10 +86,10 @@ impl Listening {
         if t_delta.as_micros() >= most {
             return Err(RingError::CoarseTDelta { t_delta, window: shortest });
         }
-        // Both fit, by the above.
+        // Both fit, as checked above.
         let (t_delta, blanking) = (t_delta.as_micros() as u16, blanking.as_micros() as u16);
         let (audible, path_change) = (MAX_AUDIBLE, AS_T_DELTA);
-        // As by `Silence::NeverFree`.
+        // As for `Silence::NeverFree`.
         let (unanswered, unwitnessed) = (UNANSWERED, ReadingKind::NoEcho);
         Ok(Self { window, audible, t_delta, blanking, path_change, unanswered, unwitnessed })
     }
@@ -173,7 +173,7 @@ impl Listening {
         let Some(verified_for) = limits.verified_for else { return false };
         let allowed = verified_for.path_change.unwrap_or(verified_for.t_delta);
         let change = self.asked_path_change();
-        // Sound that was sent two periods apart differs by the time until a sensor fires again.
+        // Sound sent two periods apart moves by at least the shortest time between a sensor's firings.
         let two_periods = self.t_delta().saturating_add(change.unwrap_or(self.t_delta()));
         change.unwrap_or(Micros::ZERO) <= allowed
             && limits.audible.is_some_and(|audible| self.audible <= audible)

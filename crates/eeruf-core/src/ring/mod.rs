@@ -44,9 +44,9 @@ pub use events::{PeriodStats, Reading, RingEvent};
 /// time, a verified schedule has no ambiguous readings. `docs/explanation/theory.md` section 2.1 has the proof and its
 /// limits.
 ///
-/// `H` is the number of firings that are remembered of each sensor, 4 bytes each. A reading that sound of a forgotten
-/// one might explain is ambiguous too; four suffice if sound is audible for no longer than a period. A judge that asks
-/// about two readings is not compiled with fewer than two:
+/// `H` is the number of firings remembered of each sensor, 4 bytes each. A reading that sound of a forgotten firing
+/// might explain is ambiguous too; four suffice if sound is audible for no longer than a period. A judge that compares
+/// two readings does not compile with fewer than two:
 ///
 /// ```compile_fail,E0080
 /// # use eeruf_core::{Instant, Ring, RingConfig, plan::ScheduledFiring, tables::PAPER_12};
@@ -78,7 +78,7 @@ pub use events::{PeriodStats, Reading, RingEvent};
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 // In this order: a Cortex-M0 reaches only the first 124 bytes of a structure in one instruction, of single bytes 31.
-// What comes before the sensors is whole words, or they are built on the stack and copied.
+// All before the sensors is whole words: else they are built on the stack and copied.
 #[repr(C)]
 pub struct Ring<P, J, const K: usize, const E: usize = 1, const H: usize = 4> {
     /// The sensor whose window closes first, or [`NOBODY`].
@@ -135,8 +135,8 @@ impl<'s, const K: usize, const M: usize, U: OwnLimits, const E: usize>
 
 impl<'s, const K: usize, const M: usize, const E: usize> Ring<ScheduledFiring<'s, K, M>, EchoFilter<K, E>, K, E> {
     /// Makes a ring like [`new`](Ring::new), by a schedule that was not verified; `config` needs `t_delta` and window.
-    /// It accepts no crosstalk either, but readings that crosstalk could explain are ambiguous: with constant waits
-    /// nearly all.
+    /// It accepts no crosstalk either, but readings that crosstalk could explain are ambiguous: nearly all with
+    /// constant waits.
     ///
     /// # Errors
     /// As for [`Ring::with_plan`].
@@ -171,8 +171,8 @@ impl<'s, const K: usize, const M: usize, const E: usize> Ring<ImmediateRefiring<
 }
 
 impl<P: Plan, const K: usize, const E: usize> Ring<P, EchoFilter<K, E>, K, E> {
-    /// A ring with the caller's own plan, which remembers four firings of each sensor. If its schedule was verified,
-    /// the ring uses that window and `t_delta`, unless `config` asks for less.
+    /// A ring with a plan of your own, which remembers four firings of each sensor. If its schedule was verified, the
+    /// ring uses that window and `t_delta`, unless `config` asks for less.
     ///
     /// # Errors
     /// As for [`Ring::remembering`].
@@ -194,7 +194,7 @@ impl<P: Plan, const K: usize, const E: usize, const H: usize> Ring<P, EchoFilter
 }
 
 impl<P: Plan, const K: usize, const E: usize> AgreementRing<P, K, E> {
-    /// A ring that accepts every reading that agrees with the one before, for baselines.
+    /// A baseline: a ring that accepts every reading that agrees with the one before.
     ///
     /// # Errors
     /// As for [`Ring::remembering`].
@@ -236,12 +236,12 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         ring
     }
 
-    /// A ring with the caller's own plan and judge, which remembers `H` firings of each sensor. The judge decides how
+    /// A ring with a plan and a judge of your own, which remembers `H` firings of each sensor. The judge decides how
     /// readings are compared: of `config` only the listening settings are used.
     ///
     /// # Errors
-    /// [`RingError`] if judge or `config` ask for more than the schedule was verified for, or `config` does not say the
-    /// window where it was not; if `K` is more than [`MAX_SENSORS`] or less than the plan's sensors; if a sensor would
+    /// [`RingError`] if judge or `config` ask for more than the schedule was verified for, or `config` gives no window
+    /// for an unverified one; if `K` is more than [`MAX_SENSORS`] or less than the plan's sensors; if a sensor would
     /// fire again while it still listens, if `t_delta` or blanking time are no shorter than the window or longer than
     /// 65,535 us, if a path may change by more than 65,534 us, or if sound is audible for longer than 67 s.
     #[inline(always)]
@@ -271,8 +271,8 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
 
     /// Polls like [`poll`](Self::poll), for a robot that moves: `expected_change_us` returns the change in microseconds
     /// that a good reading of a sensor should show since its previous firing (see [`EchoFilter::push_echoes`]). If it
-    /// is not 0, readings are checked for explanations even on time, and some walls of a fast robot are
-    /// [`Ambiguous`](ReadingKind::Ambiguous): it accepts no more crosstalk, and does not let the robot drive faster.
+    /// is not 0, readings are checked for explanations even on time, and some readings of a fast robot are
+    /// [`Ambiguous`](ReadingKind::Ambiguous). This accepts no more crosstalk, but does not permit higher speeds.
     ///
     /// [`EchoFilter::push_echoes`]: crate::EchoFilter::push_echoes
     #[inline]
@@ -304,13 +304,13 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         if self.has_pending() && !self.emit_at.has_reached(due) { self.emit_at } else { due }
     }
 
-    /// The firings to come, in their order, for hardware that fires by itself: a timer, PIO or RMT. They are valid
-    /// until one is late or the ring is changed. With a table they reach to the end of the next period, otherwise to
-    /// that of the present one.
+    /// The upcoming firings in order, for hardware that fires by itself: a timer, PIO or RMT. They are valid until one
+    /// is late or the ring is changed. With a table they reach to the end of the next period, otherwise to that of the
+    /// present one.
     ///
-    /// The loop may then come late. Replay what happened in order: for each firing, poll at its instant until there is
-    /// no event ([`RingEvent::Fire`] then reports a firing that is already done) and report its echoes; finally poll at
-    /// the present. A firing that hardware has missed is then still due.
+    /// The main loop may then run late. Replay what happened in order: for each firing, poll at its instant until there
+    /// is no event ([`RingEvent::Fire`] then reports a firing that is already done) and report its echoes; finally poll
+    /// at the present. A firing that hardware has missed is then still due.
     ///
     /// ```
     /// use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, tables::PAPER_12};
@@ -411,7 +411,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
                 self.last_ready = sensor;
             }
             Noted::Late => self.tally.count(ReadingKind::Late),
-            // As is every edge of a sensor that the ring has room for and does not have.
+            // An edge of a sensor that the ring has room for but does not have is an error too.
             Noted::Unwanted if usize::from(sensor) >= self.sensors() => return self.no_such(sensor),
             Noted::Stored | Noted::Unwanted => {}
         }
@@ -434,9 +434,9 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     }
 
     /// Reports that a sensor holds its line: the line rose after the trigger, or was still high, so that the sensor was
-    /// not triggered. Its silence counts once the line has fallen, by [`answered`](Self::answered). Until then its
-    /// readings repeat the judge's last word: [`Clear`](ReadingKind::Clear), or else [`NoEcho`](ReadingKind::NoEcho).
-    /// They neither add to a run of silences nor break it.
+    /// not triggered. Its silence counts once [`answered`](Self::answered) reports that the line has fallen. Until then
+    /// its readings repeat the judge's last verdict: [`Clear`](ReadingKind::Clear), or else
+    /// [`NoEcho`](ReadingKind::NoEcho). They neither add to a run of silences nor break it.
     ///
     /// # Errors
     /// [`SensorError`] for a sensor out of range.
@@ -469,7 +469,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         self.plan.judged(&heard, &verdict, &self.judge);
     }
 
-    /// Takes back [`answered`](Self::answered), if the answer was a disturbance.
+    /// Takes back [`answered`](Self::answered), if the answer turns out to be noise.
     ///
     /// # Errors
     /// [`SensorError`] for a sensor out of range.
@@ -492,9 +492,9 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         }
     }
 
-    /// Reports a result like [`measured`](Self::measured), with an echo time between two: a pulse whose rise and fall
-    /// are uncertain, for example, lasts at least from the latest rise to the earliest fall, and at most the converse.
-    /// See [`echo_between`](Self::echo_between).
+    /// Reports a result like [`measured`](Self::measured), with an echo time between two limits: a pulse with uncertain
+    /// edges, for example, lasts at least from the latest rise to the earliest fall, and at most from the earliest rise
+    /// to the latest fall. See [`echo_between`](Self::echo_between).
     ///
     /// # Errors
     /// See [`echo_between`](Self::echo_between).
@@ -532,12 +532,12 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         Ok(())
     }
 
-    /// Returns true if a sensor fires.
+    /// Returns true if a sensor is enabled, even while the ring is paused.
     pub fn is_enabled(&self, sensor: u8) -> bool {
         self.plan.is_enabled(sensor)
     }
 
-    /// `T_delta`: the greatest difference of near-identical consecutive readings. If sensors have their own, the
+    /// `T_delta`: the greatest difference between near-identical consecutive readings. If sensors have their own, the
     /// largest: see [`t_delta_of`](Self::t_delta_of).
     pub const fn t_delta(&self) -> Micros {
         self.listening.t_delta()
@@ -617,8 +617,8 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         &self.judge
     }
 
-    /// Reports how fast the robot moves and turns; call it once a control cycle. A judge may allow its readings to
-    /// change by as much. After half a second without a call, the ring's top speed, if any, is assumed.
+    /// Reports how fast the robot moves and turns; call it once a control cycle. A judge may let readings change by as
+    /// much. After half a second without a call, the ring's top speed, if any, is assumed.
     pub fn moving(&mut self, speed_mm_s: u32, turn_mrad_s: u32, now: Instant) {
         self.judge.moving(speed_mm_s, turn_mrad_s, now);
         let due = self.plan.deadline();
@@ -627,7 +627,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     }
 
     /// Returns true if sensors have windows of their own, so that the one that fired first need not be the first to
-    /// end.
+    /// stop listening.
     #[inline]
     fn windows_differ(&self) -> bool {
         self.plan.limits_of(0).is_some()

@@ -1,4 +1,4 @@
-//! [`Punctuality`]: tracks if all firings that may still be heard kept a verified timetable.
+//! [`Punctuality`]: tracks whether all firings that may still be heard kept a verified timetable.
 //!
 //! While they did, (13a) and (13b) hold, and a ring need not look for explanations. A late firing delays all that
 //! follow, so the time between two firings is off by at most the sum of lateness in between; a verified schedule

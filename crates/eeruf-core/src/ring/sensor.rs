@@ -5,8 +5,8 @@ use crate::filter::{NO_ECHO, insert, shift};
 use crate::reading::ReadingKind;
 use crate::time::{Instant, Micros};
 
-/// The state of one sensor between its firing and its next: 24 bytes with one echo and four remembered firings. The
-/// judge keeps the sensor's readings.
+/// The state of one sensor from one firing to the next: 24 bytes with one echo and four remembered firings. The judge
+/// keeps the sensor's readings.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(super) struct Sensor<const E: usize, const H: usize> {
@@ -35,7 +35,7 @@ pub(super) const READY: u8 = 1 << 4;
 /// All edges so far came outside the window: within the blanking time, or late after the reading. A sensor that has not
 /// fired has this flag, so that no late edge is emitted for it.
 const OUTSIDE: u8 = 1 << 5;
-// Two bits of evidence: none of them where it is complete.
+// Two bits of evidence: neither is set once it is complete.
 /// The driver found the line stuck.
 pub(super) const STUCK: u8 = 1 << 6;
 /// Nothing has shown yet that the sensor listens: its silence says nothing.
@@ -83,7 +83,7 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
         self.flags & HELD
     }
 
-    /// Notes evidence about the present firing, if there is one. A line that was stuck is no evidence.
+    /// Notes evidence about the present firing, if there is one. If the line was stuck, nothing more counts.
     pub(super) fn shows(&mut self, evidence: u8) {
         if self.is(LISTENING) && self.evidence() != STUCK {
             self.flags = self.flags & !HELD | evidence;
@@ -110,8 +110,8 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
         self.firings.push(now);
     }
 
-    /// Corrects the instant of the last firing, and with it the echoes measured from there. Returns by how many
-    /// microseconds it was later.
+    /// Corrects the instant of the last firing, and with it the echoes measured from there. Returns how many
+    /// microseconds later it was.
     pub(super) fn correct(&mut self, at: Instant) -> i32 {
         let later_us = at.since(self.fired()).as_micros() as i32;
         self.firings.correct(at);
@@ -147,7 +147,7 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
         }
         let t_echo = at.since(self.fired());
         if !at.has_reached(self.fired()) {
-            // From before it fired, or from a clock that has jumped.
+            // The edge came before the firing, or the clock has jumped.
             return Noted::Unwanted;
         }
         if !self.is(LISTENING) {
@@ -195,7 +195,7 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
     #[cold]
     fn wide_echo(&mut self, at: Instant, off: Micros, blanking: Micros, window: Micros) -> Noted {
         let us = |time: Micros| i64::from(time.as_micros());
-        // Since it fired; negative before.
+        // Time since the firing; negative before it.
         let middle = i64::from(at.since(self.fired()).as_micros() as i32);
         let [earliest, latest] = [middle - us(off), middle + us(off)];
         let listens = self.is(LISTENING);
@@ -215,7 +215,7 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
     pub(super) fn unhear(&mut self) -> bool {
         let was_ready = self.is(READY);
         if was_ready {
-            // Nor is what was held before it known any more.
+            // Edges stored before it are lost too.
             self.clear(READY | OUTSIDE);
             self.echoes = [NO_ECHO; E];
             self.uncertain[0] = 0;
@@ -234,7 +234,7 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
         self.echoes.first().copied().filter(|&echo| echo != NO_ECHO)
     }
 
-    /// Ends the firing. `unwitnessed`: the kind of silence without a witness.
+    /// Ends the firing; `unwitnessed` is the kind of silence without a witness.
     #[inline]
     pub(super) fn end(&mut self, unwitnessed: ReadingKind) -> Ended<E> {
         let echoes = core::mem::replace(&mut self.echoes, [NO_ECHO; E]);
@@ -257,11 +257,11 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
         Ended { is_held, unusable, echoes, uncertain }
     }
 
-    /// Takes the late edge of a firing that has ended. Returns true if its silence counts only now, too.
+    /// Takes the late edge of a firing that has ended. The flag is true if its silence counts only now, too.
     pub(super) fn end_late(&mut self) -> (Option<Micros>, bool) {
         let (t_echo, is_held) = (self.held(), self.evidence() == HELD);
         self.echoes = [NO_ECHO; E];
-        // After a late edge no other is waited for.
+        // No other edge is expected after a late one.
         self.flags &= PERIOD | OUTSIDE;
         (t_echo, is_held)
     }
@@ -274,7 +274,7 @@ pub(super) fn off_by(uncertain: [u8; 3]) -> [Micros; 3] {
 
 /// A firing that has ended.
 pub(super) struct Ended<const E: usize> {
-    /// The silence counts when its line has fallen.
+    /// True if the silence counts only once the line has fallen.
     pub(super) is_held: bool,
     /// Reason why the firing says nothing about the echo time, if it does not.
     pub(super) unusable: Option<ReadingKind>,

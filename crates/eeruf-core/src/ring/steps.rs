@@ -220,8 +220,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         Some(RingEvent::Reading(Reading { sensor, phase, period, kind, t_echo, previous, age, explained_by }))
     }
 
-    /// Sets the next emission to when the window of the oldest closes, for lack of a reading that can be emitted
-    /// sooner.
+    /// Sets the next emission to the end of the oldest window, if no reading can be emitted sooner.
     #[inline]
     pub(super) fn emit_when_oldest_ends(&mut self) {
         if self.ready == 0 && self.oldest != NOBODY {
@@ -237,7 +236,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
             self.find_first_to_close();
             return;
         }
-        // 1 us before is not 71 minutes after.
+        // So 1 us before does not count as 71 minutes after.
         let before = Instant::from_micros(before.as_micros().wrapping_sub(STEP_BACK.as_micros()));
         let (mut oldest, mut soonest) = (NOBODY, Micros::MAX);
         for (x, sensor) in self.sensors.iter().enumerate() {
@@ -282,7 +281,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
 /// Explanation by a firing that is not remembered.
 const UNKNOWN: Explained = Explained::By(Explanation::History);
 
-/// Memory of who fired when, for the reading of one sensor.
+/// The remembered firings of all sensors, for the reading of one.
 struct Memory<'r, P, const E: usize, const H: usize> {
     receiver: u8,
     /// Uncertainty of the receiver's echoes: of its last firing, of the one before, and of all earlier ones.
@@ -301,7 +300,7 @@ impl<P: Plan, const E: usize, const H: usize> Sounds for Memory<'_, P, E, H> {
         if self.on_time {
             return Explained::ByNothing;
         }
-        // A copy, so that nothing of it is in memory before it is asked for.
+        // A copy, so that its fields need not be in memory before this call.
         Self { ..*self }.explain_pair(1, first, second, Micros::ZERO)
     }
 
@@ -342,7 +341,7 @@ impl<P: Plan, const E: usize, const H: usize> Memory<'_, P, E, H> {
         self.sensors.get(..self.plan.sensors()).unwrap_or(self.sensors)
     }
 
-    /// Looks for firings that explain what the receiver heard, of all sensors that it can hear, itself included.
+    /// Searches the firings of all sensors that the receiver can hear, itself included, for an explanation.
     #[inline(always)]
     fn ask(&self, pair: &Pair, explain: impl Fn(&Firings<H>, bool) -> bool) -> Explained {
         let receiver = self.receiver;

@@ -5,9 +5,8 @@ use core::fmt;
 use super::limits::{MAX_PERIOD, MAX_PHASES, Phase};
 use crate::time::Micros;
 
-/// Reason why raw numbers do not make a [`Schedule`](crate::Schedule), or schedules no ladder for
-/// [`Adaptation`](crate::adaptation::Adaptation).
-/// `{:#}` counts from 0 where `{}` counts from 1.
+/// Reason why raw numbers do not make a [`Schedule`](crate::Schedule), or schedules do not make a ladder for
+/// [`Adaptation`](crate::adaptation::Adaptation). `{:#}` counts from 0 where `{}` counts from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -65,7 +64,7 @@ pub enum ScheduleError {
         /// The period of the rung before.
         before: Micros,
     },
-    /// A rung of a ladder has another number of sensors than the first.
+    /// A rung of a ladder does not have as many sensors as the first.
     RungSensors {
         /// The rung.
         rung: usize,

@@ -1,6 +1,6 @@
 //! [`Schedule`]: when each sensor fires, checked once so that everything else may rely on it.
 //!
-//! The room holds the table, its limits and its errors; it uses nothing but [`time`](crate::time).
+//! This module holds the table, its limits and its errors; it depends only on [`time`](crate::time).
 
 mod build;
 mod error;
@@ -21,9 +21,9 @@ pub use verified_for::VerifiedFor;
 /// Firing times: each sensor fires once per period, at `T_fire = T_lag + T_wait`, where `T_wait` changes with the phase
 /// (Sec. 3.1).
 ///
-/// `K` is the number of sensors a table written as arrays has; for tables whose size is known only at run time it is
-/// the capacity, and [`sensors`](Self::sensors) counts (see [`from_slices`](Self::from_slices)). `M` is the number of
-/// phases: two in the paper, one for the conventional method with constant waits.
+/// `K` is the number of sensors of a table written as arrays. For tables whose size is known only at run time it is the
+/// capacity, and [`sensors`](Self::sensors) is the number (see [`from_slices`](Self::from_slices)). `M` is the number
+/// of phases: two in the paper, one for the conventional method with constant waits.
 ///
 /// A `Schedule` is proof of a check: 1 to 64 sensors, each firing inside its period, in every phase. It does not prove
 /// that its waits meet Eqs. (13a), (13b): see [`verify`](Schedule::verify), or [`schedule!`](crate::schedule!) for a
@@ -49,7 +49,7 @@ pub struct Schedule<const K: usize, const M: usize = 2> {
     t_lag: [Micros; K],
     t_wait: [[Micros; K]; M],
     sensors: u8,
-    /// Set in a [`VerifiedSchedule`](crate::VerifiedSchedule) and in copies of its schedule; else `None`.
+    /// The requirements of a [`VerifiedSchedule`](crate::VerifiedSchedule), also in copies of it; else `None`.
     verified_for: Option<VerifiedFor>,
 }
 
@@ -60,7 +60,7 @@ pub struct Schedule<const K: usize, const M: usize = 2> {
 struct Firings<const K: usize> {
     /// The sensors by firing time; then 255.
     order: [u8; K],
-    /// Time from the firing before to each, of the first from the start of the period; then `after_last`.
+    /// Time before each firing, since the one before or the start of the period; then `after_last`.
     gap: [Micros; K],
     /// Time from the last firing to the end of the period.
     after_last: Micros,
@@ -146,7 +146,7 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
         self.verified_for.as_ref()
     }
 
-    /// Returns true if the schedule is that of a [`VerifiedSchedule`](crate::VerifiedSchedule), or a copy.
+    /// Returns true if the schedule comes from a [`VerifiedSchedule`](crate::VerifiedSchedule).
     pub const fn is_verified(&self) -> bool {
         self.verified_for.is_some()
     }
@@ -171,7 +171,7 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
 const fn used<T>(table: &[T], sensors: u8) -> &[T] {
     match table.split_at_checked(sensors as usize) {
         Some((used, _)) => used,
-        // Never: a schedule has at most `K` sensors.
+        // Unreachable: a schedule has at most `K` sensors.
         None => table,
     }
 }
@@ -233,7 +233,7 @@ mod tests {
         assert_eq!(texts, expected);
     }
 
-    // A table of run time size equals the same table as arrays in all it tells.
+    // A table sized at run time reports the same as the table written as arrays.
     #[test]
     fn run_time_table_equals_array_table() {
         let lags = ms([0, 20, 40]);
@@ -286,7 +286,7 @@ mod tests {
         assert!(TABLE_I_D.scaled(0, 5).is_err() && TABLE_I_D.scaled(u32::MAX, 1).is_err());
         let two = Schedule::<2>::from_firing(Micros::new(100), [[7, 8].map(Micros::new); 2]).unwrap();
         assert_eq!(two.scaled(1, 5).unwrap().t_wait(Phase::B), [1, 2].map(Micros::new));
-        // Times beyond 32 bits do not come round to small ones.
+        // Times beyond 32 bits do not wrap to small ones.
         let whole = Schedule::<1>::from_firing(Micros::new(1 << 16), [[Micros::ZERO]; 2]).unwrap();
         assert!(whole.scaled((1 << 16) + 1, 1).is_err());
     }

@@ -1,4 +1,4 @@
-//! Time until a sensor of a [`Schedule`](super::Schedule) fires again, and the robot's speed that it allows.
+//! Time until a sensor of a [`Schedule`](super::Schedule) fires again, and the robot speed that it allows.
 
 use super::{Phase, Schedule};
 use crate::time::Micros;
@@ -55,15 +55,15 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
         most
     }
 
-    /// The fastest motion, in mm/s, at which a good reading still changes by no more than `t_delta` from one firing to
-    /// the next, where sound travels at `c` mm/s: the change is `2 v dt / c` (Sec. 3.1), and `dt` up to
+    /// The maximum speed, in mm/s, at which a good reading changes by no more than `t_delta` from one firing to the
+    /// next, for a speed of sound of `c` mm/s. The change is `2 v dt / c` (Sec. 3.1), with `dt` up to
     /// [`max_refire`](Self::max_refire).
     pub const fn max_speed_mm_s(&self, t_delta: Micros, c_mm_s: u32) -> u32 {
         let speed = t_delta.as_micros() as u64 * c_mm_s as u64 / (2 * self.max_refire().as_micros() as u64);
         if speed > u32::MAX as u64 { u32::MAX } else { speed as u32 }
     }
 
-    /// Time from this sensor's firing in a phase to its next one.
+    /// Time from a sensor's firing in a phase to its next one.
     pub(crate) const fn refire(&self, phase: usize, sensor: usize) -> Micros {
         let next = self.fire_at((phase + 1) % M, sensor).as_micros() + self.period.as_micros();
         Micros::new(next - self.fire_at(phase, sensor).as_micros())

@@ -1,6 +1,6 @@
 //! `serde` for [`Schedule`]: the keys of a schedule file, `period_us`, `t_lag_us`, `t_wait_a_us`, `t_wait_b_us`, .. .
 //!
-//! The requirements that it was verified for are not written: verify a schedule after reading it.
+//! The requirements that a schedule was verified for are not written: verify it again after reading.
 
 use core::fmt;
 use core::marker::PhantomData;
@@ -77,7 +77,7 @@ impl<'de, const K: usize, const M: usize> Visitor<'de> for Fields<K, M> {
                 LAGS => lags.replace(map.next_value()?).is_some(),
                 _ => match WAITS.iter().position(|wait| *wait == name).and_then(|phase| waits.get_mut(phase)) {
                     Some(waits) => waits.replace(map.next_value()?).is_some(),
-                    // Never: `Key` knows no others.
+                    // Unreachable: `Key` knows no others.
                     None => false,
                 },
             };

@@ -12,7 +12,7 @@ pub struct Progress {
     /// The best value found so far, in ticks, if the search optimises one: the shortest period, the largest interval or
     /// separation.
     pub best: Option<u32>,
-    /// Proven bound of the value, in ticks.
+    /// The proven bound on that value, in ticks.
     pub bound: Option<u32>,
 }
 
@@ -43,7 +43,7 @@ impl<F: FnMut(&Progress) -> ControlFlow<()>> Control for F {
     }
 }
 
-/// The end of a search. For searches that return their answer elsewhere, such as those for waits, `T` is `()`.
+/// Result of a search. For searches that return their answer elsewhere, such as those for waits, `T` is `()`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub enum Outcome<T = ()> {

@@ -13,7 +13,7 @@ use crate::time::Micros;
 pub enum SearchError {
     /// The tick is zero.
     NoTick,
-    /// A time that should be a whole number of ticks.
+    /// A time is not a whole number of ticks.
     OffGrid {
         /// The name of the time.
         what: &'static str,
@@ -26,7 +26,7 @@ pub enum SearchError {
     PaperCriterion,
     /// The number of sensors is 0 or above [`MAX_SENSORS`].
     Sensors(usize),
-    /// There is not one lag for each sensor.
+    /// The number of lags differs from the number of sensors.
     Lags {
         /// The number of sensors.
         sensors: usize,

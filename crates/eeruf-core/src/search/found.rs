@@ -3,7 +3,7 @@
 use crate::schedule::Schedule;
 use crate::time::Micros;
 
-/// The best schedule that a search came to.
+/// The best schedule that a search found.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Found<const K: usize> {
@@ -11,7 +11,7 @@ pub struct Found<const K: usize> {
     pub schedule: Option<Schedule<K>>,
     /// The value that was optimised: the period, the smallest interval or `t_delta`.
     pub value: Option<Micros>,
-    /// Proven bound of the value; `None` if no schedule exists.
+    /// The proven bound on that value; `None` if no schedule exists.
     pub bound: Option<Micros>,
     /// True if no better schedule exists (or none at all, without a schedule).
     pub proven: bool,

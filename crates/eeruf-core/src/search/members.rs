@@ -1,6 +1,6 @@
 //! The members of a bit set.
 
-/// Goes through the members of a set of numbers below 64, given as bits, lowest first.
+/// Iterator over the members of a set of numbers below 64, given as bits, lowest first.
 ///
 /// Not [`SensorSet`](crate::sensor_set::SensorSet), which is two words for targets without 64-bit registers: the
 /// searches compute with whole rows of bits.

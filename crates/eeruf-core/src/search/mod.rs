@@ -1,8 +1,8 @@
 //! The paper's search for waits, exhaustive and proven.
 //!
-//! Lags are given, waits are sought on a grid: [`WaitSearch`] finds one table, all, how many, the best. It works in
-//! memory that the caller lends, without recursion or a clock, so the same question has the same answer on each target.
-//! Whatever it returns passes [`Schedule::verify`](crate::Schedule::verify), which shares nothing with it.
+//! With the lags given, [`WaitSearch`] looks for waits on a grid: one table, all, their number, or the best. It works
+//! in memory that the caller lends, without recursion or a clock, so the same question has the same answer on each
+//! target. Whatever it returns passes [`Schedule::verify`](crate::Schedule::verify), which shares nothing with it.
 //!
 //! | question | method | how |
 //! |---|---|---|
@@ -12,14 +12,13 @@
 //! | the front of both | [`WaitSearch::next_on_front`] | the best of one, then of the other |
 //! | the shortest waits or period | [`WaitSearch::shortest_waits`], [`WaitSearch::shortest_period`] | by bisection |
 //! | every one | [`WaitSearch::next_table`] | depth first over the values, in lexicographic order |
-//! | how many? | [`WaitSearch::count`] | depth first, with what was counted before kept in memory |
+//! | how many? | [`WaitSearch::count`] | depth first, with earlier counts kept in memory |
 //!
-//! [`memory_words`] says how much memory is enough for all but counting, and counting is exact with any amount, faster
-//! with more. Deciding about twelve sensors takes 13.4 KB of stack on a Cortex-M3 beside it, counting up to 64 KiB.
+//! [`memory_words`] gives the memory that suffices for everything but counting, which is exact with any amount and
+//! faster with more. Twelve sensors also need stack on a Cortex-M3: 13.4 KB to find tables, up to 64 KiB to count them.
 //!
-//! Where firing times are free and the shortest period is sought, the crate `eeruf-period` has the search. How a search
-//! ends ([`Outcome`], [`Found`]), who watches it ([`Control`], [`Progress`]) and why it cannot start ([`SearchError`])
-//! are the same for both.
+//! The crate `eeruf-period` searches for the shortest period with free firing times. Both searches share the types for
+//! their end ([`Outcome`], [`Found`]), their watcher ([`Control`], [`Progress`]) and their errors ([`SearchError`]).
 
 mod control;
 mod error;

@@ -26,7 +26,7 @@ pub struct WaitProblem<'a> {
     /// `T_lag` of each sensor, in whole ticks; `None` spreads each group of [`neighbours`](Self::neighbours) sensors
     /// over the period, as Table I-a does.
     pub t_lag: Option<&'a [Micros]>,
-    /// `T_delta`: the greatest difference of near-identical readings.
+    /// `T_delta`: the greatest difference between near-identical readings.
     pub t_delta: Micros,
     /// The least time between the firings of two neighbours.
     pub min_interval: Micros,
@@ -34,7 +34,7 @@ pub struct WaitProblem<'a> {
     pub neighbours: u8,
     /// Pairs of neighbours.
     pub layout: Layout<'a>,
-    /// The reading of (13a), (13b).
+    /// The interpretation of (13a), (13b).
     pub criterion: Criterion,
 }
 
@@ -99,7 +99,7 @@ pub enum Infeasible {
         /// `T_p`.
         period: Micros,
     },
-    /// Both needs together cannot be met; it is not known that one alone is the reason.
+    /// Both needs together cannot be met; neither alone is known to be the reason.
     Together,
 }
 
@@ -192,8 +192,8 @@ impl WaitSearch {
         self.schedule_if_found(outcome, &a, &b)
     }
 
-    /// Names the need, separation or interval, that cannot be met, if there is no table: it searches with one of them
-    /// at a time, within the budget for both.
+    /// Names the need that cannot be met, separation or interval, if there is no table. It searches with one of them at
+    /// a time, within one budget for both.
     ///
     /// # Errors
     /// As for [`first`](Self::first).
@@ -216,13 +216,13 @@ impl WaitSearch {
     /// Counts the tables; stops early when there are `limit` or more. More `memory` makes it faster
     /// ([`COUNT_WORDS`](super::COUNT_WORDS)); it may be empty.
     ///
-    /// The count is exact with [`Outcome::Exhausted`], otherwise at least so much: with [`Outcome::Found`] the limit
-    /// was reached, or without one `u128::MAX`.
+    /// The count is exact with [`Outcome::Exhausted`], otherwise a lower bound: with [`Outcome::Found`] it reached the
+    /// limit, or `u128::MAX` without one.
     pub fn count(&self, limit: Option<u128>, memory: &mut [u32], budget: &mut Budget<'_>) -> (Outcome, u128) {
         self.ticks().count(limit, memory, budget)
     }
 
-    /// Finds the table with the largest smallest interval at the `t_delta` of the problem, and proves that none is
+    /// Finds the table whose smallest interval is largest at the `t_delta` of the problem, and proves that none is
     /// better. Without neighbours the interval is the period.
     ///
     /// # Errors
@@ -236,7 +236,7 @@ impl WaitSearch {
     }
 
     /// Finds the table with the largest `t_delta` at the smallest interval of the problem, and proves that none is
-    /// better. That of a single sensor is limited by `wait_max` alone.
+    /// better. For a single sensor only `wait_max` limits it.
     ///
     /// # Errors
     /// As for [`first`](Self::first).
@@ -262,7 +262,7 @@ impl WaitSearch {
         Ok(Found { schedule, value: value.and_then(time), bound, proven: best.proven(), nodes })
     }
 
-    /// Finds the table with the shortest longest wait at the period of the problem, and proves that none is shorter.
+    /// Finds the table whose longest wait is shortest at the period of the problem, and proves that none is shorter.
     ///
     /// # Errors
     /// As for [`first`](Self::first).
@@ -408,7 +408,7 @@ pub struct FrontTable<const K: usize> {
     pub schedule: Schedule<K>,
     /// The smallest interval between neighbours; no table with at least this `t_delta` has a larger one.
     pub min_interval: Micros,
-    /// `T_delta`; no table with at least this interval has a larger one. `None` if two readings of the table are alike.
+    /// `T_delta`; no table with at least this interval has a larger one. `None` if the separation is zero.
     pub t_delta: Option<Micros>,
     separation: u32,
 }

@@ -40,7 +40,7 @@ fn every_sensor_and_pair_fires_with_every_lead() {
     }
     assert_eq!((seen.len(), plan.slots(), firings(plan, plan.slots()).len()), (0, 5 * 2 + 20 * 3, 0));
     assert_eq!(plan.duration_us(), 70 * (800 + 36_000 + 57_000));
-    // The first pair comes first, however many slots are before it.
+    // The first pair follows the solos, however many there are.
     let once = SurveyPlan::new(5).with_solos(1);
     assert_eq!(firings(once, 5), [(0, Micros::ZERO), (1, Micros::ZERO)]);
     assert_eq!(firings(SurveyPlan::new(0), 0), []);
@@ -99,13 +99,13 @@ fn late_firing_delays_all_that_follow() {
     }
 }
 
-// A plan says what it was made with and nothing longer than ten seconds.
+// A plan reports its settings, capped at ten seconds.
 #[test]
 fn plan_keeps_its_settings_up_to_ten_seconds() {
     let plan = SurveyPlan::new(3).with_solos(1).with_leads(2, Micros::new(500));
     let plan = plan.with_window(Micros::from_millis(30), Micros::from_millis(5));
     assert_eq!((plan.sensors(), plan.window(), plan.slot_length()), (3, Micros::from_millis(30), Micros::new(35_500)));
-    // After each alone come all pairs, sensor by sensor, and then all of them with the next lead.
+    // All sensors fire alone, then all pairs, sensor by sensor, then all pairs with the next lead.
     let pairs = [(0, 1), (0, 2), (1, 0), (1, 2), (2, 0), (2, 1)];
     for (number, (first, second)) in (3..).zip(pairs.into_iter().cycle()).take(12) {
         let lead = if number < 9 { Micros::ZERO } else { Micros::new(500) };
@@ -168,7 +168,7 @@ fn a_survey_left_alone_for_any_time_goes_on_when_polled() {
     let plan = SurveyPlan::new(2).with_leads(2, Micros::new(500)).with_solos(1);
     let planned = run(plan, |_| 0);
     for minutes in [1, 34, 36, 40, 70] {
-        // Before each of its sleeps, the one before its first firing excepted.
+        // Before each of its sleeps except the one before its first firing.
         for before in 1..3 * planned.1.len() {
             let (mut survey, mut now) = (Survey::new(plan, Instant::from_micros(0)), Instant::from_micros(0));
             let (mut fired, mut rows, mut sleeps) = (Vec::new(), Vec::new(), 0);

@@ -33,7 +33,7 @@ impl<'p> Search<'p> {
     pub(crate) fn enumerate_after(&self, a: [u32; MAX_SENSORS], b: [u32; MAX_SENSORS]) -> Enumeration<'p> {
         let mut rest = Enumeration { a, b, ..self.enumerate() };
         let sensors = self.sensors();
-        // The first sensor whose waits are none for it goes on from them.
+        // Continue at the first sensor whose waits do not fit, from those waits.
         let unfit = (0..sensors).find(|&k| !rest.fits(k));
         rest.depth = Some(unfit.unwrap_or(sensors - 1));
         rest.handed_out = unfit.is_none();

@@ -1,4 +1,4 @@
-//! The best table: the one with the largest smallest interval, or with the largest separation.
+//! The best table: the one whose smallest interval is largest, or the one with the largest separation.
 //!
 //! Both are monotone: a table for one value serves for each smaller one. So a bisection over [`decide`] is exact, and
 //! its last infeasible value is the proof. Slow values wait until the quick ones are decided.
@@ -70,7 +70,7 @@ impl Search<'_> {
             },
         };
         if self.problem().criterion == Criterion::Paper {
-            // The weaker criterion is decided much faster, and what it excludes is excluded.
+            // The weaker criterion is decided much faster, and whatever it excludes is excluded here too.
             let exact = Self::new(Problem { criterion: Criterion::Exact, ..*self.problem() });
             let exact = budget.slice(BOUND_SLICE, |budget| exact.best(objective, memory, budget, a, b))?;
             if exact.outcome == Outcome::Exhausted {

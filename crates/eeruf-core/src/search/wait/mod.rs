@@ -12,8 +12,8 @@
 //! All times are whole ticks, whatever a tick is; `D = 2 t_delta + 1 tick`, as near-identical is `<= t_delta`.
 //!
 //! Once orders are decided, waits are a system of difference constraints, which Bellman and Ford's algorithm solves or
-//! refutes (T. H. Cormen and others, *Introduction to Algorithms*, chapter on shortest paths); which order, rank or
-//! sign is *disjunctive*, so the search branches on it. `docs/explanation/theory.md`, section 7, has the arguments.
+//! refutes (T. H. Cormen and others, *Introduction to Algorithms*, chapter on shortest paths); order, rank and sign are
+//! *disjunctive* choices, so the search branches on them. `docs/explanation/theory.md`, section 7, has the arguments.
 //!
 //! Nothing here allocates, recurses, reads a clock or draws random numbers.
 

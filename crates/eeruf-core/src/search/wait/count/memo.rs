@@ -82,7 +82,7 @@ impl<'m> Memo<'m> {
     }
 
     /// Clears and uses the first `active` entries, so that a short count need not clear all the lent memory. Growing
-    /// forgets entries, but seldom enough to cost little.
+    /// forgets entries, but happens rarely enough to cost little.
     fn use_first(&mut self, active: usize) {
         self.active = active.min(self.entries);
         self.written = 0;

@@ -1,4 +1,4 @@
-//! Number of tables: depth first over the sensors, with what was counted before kept in memory.
+//! Number of tables: depth first over the sensors, with earlier counts kept in memory.
 //!
 //! Little about the sensors already placed matters to those still to come: which `|d|` (and `s`) are still free, and
 //! which waits remain to each sensor that conflicts with one of them. Two partial tables that leave the same remainder

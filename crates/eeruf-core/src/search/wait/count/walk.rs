@@ -148,7 +148,7 @@ impl<'p, 'm> Counting<'p, 'm> {
             return false;
         }
         let mut ticket = None;
-        // Two sensors can be placed in different ways that leave the same; one cannot.
+        // Two sensors can be placed in different ways that leave the same remainder; one cannot.
         if level >= 2 && self.memo.is_useful() {
             self.set_key(level, free);
             match self.memo.look_up(&self.key) {

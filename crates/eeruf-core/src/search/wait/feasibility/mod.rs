@@ -1,4 +1,4 @@
-//! Decides if a table exists: by orders first, then by ranks of `|d|`, then by values if ranks do not decide them.
+//! Decides if a table exists: by orders first, then by ranks of `|d|`, then by values if ranks leave them open.
 //!
 //! Sensors get their ranks from the greatest `|d|` down. The sensor of rank `r` has `|d| >= D r`, and as those above it
 //! take their share, `|d| <= wait_max - D (K - 1 - r)`. Each branch is tested with the least waits that its difference

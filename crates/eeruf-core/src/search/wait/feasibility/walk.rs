@@ -350,8 +350,7 @@ mod tests {
 
     #[test]
     fn twelve_sensors_are_decided_in_sixteen_kibibytes() {
-        // A decision, the waits it hands out and sets aside, and the memory lent; what else a call keeps is a few
-        // words.
+        // A decision, the waits it hands out and sets aside, and the memory lent; the rest of a call is a few words.
         let waits = 2 * size_of::<[i32; 2 * MAX_SENSORS]>();
         let lent = memory_words(12) * size_of::<u32>();
         assert_eq!(lent, 1784);

@@ -1,6 +1,5 @@
-//! Steps of the search for waits to its answers, the same on each machine: written down in
-//! `effort.txt`. A change that makes it take other steps shows there what it costs or saves.
-//! `EERUF_WRITE=1` rewrites the file.
+//! The steps that the search for waits takes, the same on every machine, recorded in `effort.txt`: the file shows what
+//! a change of the search costs or saves. `EERUF_WRITE=1` rewrites it.
 
 extern crate std;
 

@@ -1,5 +1,5 @@
-//! A custom judge: it accepts as the filter does, and calls a near echo that nothing confirms yet *tentative*, so that
-//! a robot slows down before it knows. `cargo run -p eeruf-core --example own_judge`
+//! A custom judge that accepts what the filter accepts and reports near, unconfirmed echoes as *tentative*, so that a
+//! robot slows down early. `cargo run -p eeruf-core --example own_judge`
 
 use std::error::Error;
 
@@ -7,7 +7,7 @@ use eeruf_core::judge::{Heard, Judge, Sounds, Verdict};
 use eeruf_core::plan::ScheduledFiring;
 use eeruf_core::{EchoFilter, Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, tables::PAPER_12};
 
-/// Echoes sooner than this are near: about one metre.
+/// Echo times below this count as near: about one metre.
 const NEAR: Micros = Micros::from_millis(6);
 
 /// The filter, with a warning for near echoes that it has not confirmed.
@@ -60,7 +60,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let now = ring.next_deadline();
         while let Some(event) = ring.poll(now) {
             match event {
-                // A person steps before the first sensor after two periods.
+                // After two periods a person steps in front of the first sensor.
                 RingEvent::Fire { sensor, .. } => {
                     let near = sensor == 0 && firings >= 24;
                     ring.echo(sensor, now + Micros::from_millis(if near { 4 } else { 12 }))?;

@@ -1,4 +1,4 @@
-//! A ring of four sensors, each before its own wall, in a main loop as firmware has it: poll, trigger, hand in edges,
+//! A ring of four sensors, each facing its own wall, in a main loop like that of firmware: poll, trigger, report edges,
 //! sleep until the next deadline. `cargo run -p eeruf-core --example ring`
 
 use std::error::Error;
@@ -8,7 +8,7 @@ use eeruf_core::{
     schedule, watch::SensorWatch,
 };
 
-/// Checked when this is compiled. `eeruf design RING.toml --period-only --emit rust` writes such a table.
+/// Checked at compile time. `eeruf design RING.toml --period-only --emit rust` writes such a table.
 static FRONT: VerifiedSchedule<4> = schedule! {
     period_us: 60_000,
     t_fire_a_us: [0, 15_000, 30_000, 45_000],
@@ -36,7 +36,7 @@ fn main() -> Result<(), Box<dyn Error>> {
                 println!("sensor {} is blind", blind + 1);
             }
             match event {
-                // Firmware raises the trigger line; the echo line's interrupt calls `echo` when its edge comes.
+                // Firmware pulses the trigger line; the interrupt of the echo line calls `echo` at its edge.
                 RingEvent::Fire { sensor, .. } => {
                     if let Some(wall) = WALLS_MM[usize::from(sensor)] {
                         ring.echo(sensor, now + sound.echo_time(wall))?;

@@ -1,4 +1,4 @@
-//! The formats of other crates, where their features are on: `serde` and `defmt`.
+//! The formats of other crates, if their features are on: `serde` and `defmt`.
 #![cfg(any(feature = "serde", feature = "defmt"))]
 
 #[cfg(feature = "serde")]
@@ -8,7 +8,7 @@ mod schedules_as_serde_sees_them {
     use serde::de::{Deserialize, Deserializer, Error, Visitor, value};
     use serde::forward_to_deserialize_any;
 
-    /// A format that records the fields it is asked for, and has none of them.
+    /// A format that records the fields requested and has none of them.
     struct AsksFor;
 
     impl<'de> Deserializer<'de> for AsksFor {
@@ -33,7 +33,7 @@ mod schedules_as_serde_sees_them {
         }
     }
 
-    // A format is asked for the fields of as many phases as there are.
+    // A format is asked for the fields of every phase.
     #[test]
     fn format_is_asked_for_its_phases() {
         let one = Schedule::<2, 1>::deserialize(AsksFor).unwrap_err().to_string();
@@ -53,7 +53,7 @@ mod schedules_as_serde_sees_them {
         let smaller = r#"{"t_wait_b_us": [7, 5], "t_lag_us": [0, 20], "t_wait_a_us": [9, 9], "period_us": 60}"#;
         let read: Schedule<64> = serde_json::from_str(smaller).unwrap();
         assert_eq!((read.sensors(), read.period()), (2, Micros::new(60)));
-        // What it was verified for stays behind.
+        // The verified requirements are not written.
         let verified = serde_json::to_string(&PAPER_12).unwrap();
         assert!(verified == text && !serde_json::from_str::<Schedule<12>>(&verified).unwrap().is_verified());
     }
@@ -93,7 +93,7 @@ mod a_format_that_counts_fields {
     /// A format that counts the fields of a struct, which formats such as CBOR write before them.
     struct Count;
 
-    /// Number of announced fields, and of fields that came.
+    /// Number of fields announced, and of fields written.
     struct Fields(usize, usize);
 
     type Never = Impossible<(usize, usize), Error>;

@@ -17,20 +17,20 @@ fn ring(start: u32) -> ScheduledRing<'static, 12> {
     Ring::new(&PAPER_12, RingConfig::new().with_window(Micros::from_millis(40)), at(start)).unwrap()
 }
 
-/// A wall before each sensor, with 30 us of jitter.
+/// A wall in front of each sensor, with 30 us of jitter.
 fn wall(r: &mut Random, sensor: u8) -> Micros {
     Micros::new(4_000 + 1_500 * u32::from(sensor) + r.up_to(30))
 }
 
-/// Runs a loop that comes round every 0 to 5 ms, with own walls and Table I-d; returns the number of readings, and of
-/// accepted ones.
+/// Runs a loop with a turn every 0 to 5 ms, Table I-d and a wall for each sensor; returns the numbers of readings and
+/// of accepted readings.
 fn late_loop(seed: u64, by_timer: bool) -> (u32, u32) {
     let config = RingConfig::new().with_t_delta(Micros::new(999)).with_window(Micros::from_millis(40));
     let start = u32::MAX - 2_000_000;
     let (mut r, mut now) = (Random(seed), at(start));
     let mut ring = ScheduledRing::<12>::unverified(&TABLE_I_D, config, now).unwrap();
     let (mut readings, mut accepted) = (0, 0);
-    // Echo edges that have come, but not been handed in.
+    // Echo edges that have come but are not reported yet.
     let mut edges: Vec<(u8, Instant)> = vec![];
     while readings < 3_600 {
         now += Micros::new(r.up_to(5_000));
@@ -124,7 +124,7 @@ fn report_after_keeps_readings_open_for_what_comes_late() {
         due.retain(|&(reported, sensor)| {
             let has_come = now.has_reached(reported);
             if has_come {
-                // Sensor 0 hears a wall, 1 nothing, and 2 says nothing at all; 3 hears something beyond the window.
+                // Sensor 0 hears a wall, 1 nothing, 3 something beyond the window; 2 reports nothing at all.
                 let t_echo = [Some(12_000), None, None, Some(40_001)].get(usize::from(sensor)).copied().flatten();
                 if sensor != 2 {
                     ring.measured(sensor, t_echo.map(Micros::new)).unwrap();

@@ -1,5 +1,5 @@
-//! Ambiguous readings of a ring: after a restart all that earlier sound could explain; never one without an
-//! explanation, whatever is done to the ring.
+//! Ambiguous readings of a ring: after a restart, all that earlier sound could explain; at any time, none without an
+//! explanation.
 
 use eeruf_core::tables::{PAPER_12, TABLE_I_D};
 use eeruf_core::{
@@ -10,7 +10,7 @@ use eeruf_core::{
 
 const WINDOW: Micros = Micros::from_millis(40);
 
-/// A ring of twelve, and a wall that each of them sees after 9 ms.
+/// A ring of twelve sensors, each of which sees a wall after 9 ms.
 struct Run<'s> {
     ring: ScheduledRing<'s, 12>,
     now: Instant,
@@ -23,7 +23,7 @@ impl<'s> Run<'s> {
         Self { ring, now: Instant::from_micros(0), fired: vec![] }
     }
 
-    /// Polls this much later than the next event is due, and returns the event.
+    /// Polls this much after the next event is due, and returns the event.
     fn step(&mut self, late: u32) -> RingEvent {
         self.now = self.ring.next_deadline() + Micros::new(late);
         let event = self.ring.poll(self.now).expect("an event at the deadline");
@@ -51,7 +51,7 @@ impl<'s> Run<'s> {
         read
     }
 
-    /// Goes on until `count` sensors have fired in this period.
+    /// Runs until `count` sensors have fired in this period.
     fn firings(&mut self, count: usize) {
         while self.fired.len() < count {
             self.step(0);

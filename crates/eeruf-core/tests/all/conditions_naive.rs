@@ -1,4 +1,4 @@
-//! The conditions and the verifier against plain formulas, pair by pair, on seeded pseudo-random schedules.
+//! Compares the conditions and the verifier with plain formulas, pair by pair, on seeded pseudo-random schedules.
 
 use eeruf_core::{
     Criterion, Instant, Layout, Micros, Phase, ReadingKind, Requirements, Schedule, SpeedOfSound,
@@ -43,10 +43,10 @@ fn left_sides(schedule: &Schedule<SENSORS>, criterion: Criterion, x: usize, y: u
     }
 }
 
-/// Two sensors, the phases in which they fire, and the time between.
+/// Two sensors, the phases in which they fire, and the time between the firings.
 type Apart = ((u8, u8), (Phase, Phase), i64);
 
-/// All intervals between neighbours: the sensors, the phases, and the time between.
+/// All intervals between neighbours.
 fn intervals<const M: usize>(schedule: &Schedule<SENSORS, M>, layout: Layout<'_>) -> Vec<Apart> {
     let mut intervals = vec![];
     for phase in 0..M {
@@ -87,7 +87,7 @@ fn assert_is_smallest<const M: usize>(schedule: &Schedule<SENSORS, M>, layout: L
     assert_eq!(Some(i64::from(schedule.min_refire().as_micros())), shortest);
 }
 
-// The smallest interval and refire time are the smallest of all in one two and three phases.
+// The smallest interval and refire time are the smallest over all of one, two or three phases.
 #[test]
 fn smallest_interval_is_the_smallest_of_all_phases() {
     let mut random = Random(1);
@@ -172,7 +172,7 @@ fn the_verifier_names_every_violation_and_no_other() {
         for violation in &found {
             by_kind[violation.0 as usize] += 1;
         }
-        // Of a window the phase after which it is too long counts; how the second is put is left open.
+        // For a window, the phase after which it is too long counts; the second phase may be anything.
         let order = |v: &(ViolationKind, (u8, u8), (Phase, Phase), i64, i64)| (v.0 as u8, v.1, v.2);
         for list in [&mut found, &mut expected] {
             for violation in list.iter_mut().filter(|violation| violation.0 == ViolationKind::Window) {
@@ -216,7 +216,7 @@ fn neighbours_stand_less_than_so_many_steps_apart() {
         assert!(layout.neighbours(3, 0, 2));
         assert!(!layout.neighbours(2, 0, 2) && !layout.neighbours(2, 2, 0) && !layout.neighbours(2, 5, 9));
     }
-    // Words and bits that are not there name nobody.
+    // Missing words and bits name no sensor.
     assert!(!Layout::Graph(&[0b10]).neighbours(3, 1, 2) && !Layout::Graph(&[1]).neighbours(65, 0, 64));
 }
 

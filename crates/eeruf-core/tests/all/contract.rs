@@ -1,4 +1,4 @@
-//! The contract of `Plan`: core's own plans keep it, and the check finds plans that break it.
+//! The contract of `Plan`: the plans in core keep it, and the check finds plans that break it.
 
 use eeruf_core::tables::{TABLE_I_A, TABLE_I_D};
 use eeruf_core::{
@@ -159,7 +159,7 @@ fn the_check_finds_each_promise_that_is_broken() {
     assert_eq!(found(Fault::FiresOneThatIsNotThere), Some(BrokenPromise::WrongSensor { sensor: 12 }));
 }
 
-/// A plan with one sensor that fires as often as it may, and a record of the calls to it.
+/// A plan with one sensor that fires as often as it may, and records the calls to it.
 struct Metronome {
     due: Instant,
     enabled: bool,
@@ -265,18 +265,18 @@ fn the_check_makes_the_same_calls_every_time() {
         check_plan(&mut metronome, START, 2_000, seed).unwrap();
         metronome.calls
     };
-    // What somebody's test found with a seed it finds again.
+    // A seed reproduces the calls of a failed test.
     assert_eq!([0, 1, 2].map(calls), [3_753_173_269, 3_957_200_330, 1_690_996_254]);
 }
 
-// A broken promise names the sensor the value and what is expected.
+// A broken promise names the sensor, the value and the expectation.
 #[test]
 fn broken_promise_names_sensor_value_and_expectation() {
     let broken = BrokenPromise::MinRefire { sensor: 2, after: Micros::from_millis(7) };
     assert_eq!(broken.to_string(), "it fires sensor 3 again after 7 ms; expected min_refire or more");
 }
 
-/// Three enabled sensors, none of which ever fires: at each deadline this many periods end at once.
+/// Three enabled sensors that never fire; at each deadline this many periods end at once.
 struct Periods {
     due: Instant,
     at_once: u32,
@@ -344,7 +344,7 @@ impl Plan for Periods {
     }
 }
 
-// The check takes fewer steps at once than four a sensor and eight for coming to rest.
+// The check allows fewer steps at once than four a sensor plus eight to come to rest.
 #[test]
 fn check_limits_steps_at_once() {
     let steps = |at_once| check_plan(&mut Periods::new(at_once, Micros::from_millis(50)), START, 1, 0);
@@ -352,11 +352,11 @@ fn check_limits_steps_at_once() {
     assert_eq!(steps(4 * 3 + 8), Err(BrokenPromise::Endless));
 }
 
-// The check calls a sensor silent after more than four horizons and not at four.
+// The check calls a sensor silent after more than four horizons, not at four.
 #[test]
 fn check_calls_silence_after_four_horizons() {
     let every = Micros::from_millis(50);
-    // A run in which all polls are on time and nothing else is done: the sensors wait since the first one's end.
+    // A run in which all polls are on time and nothing else happens: the sensors wait from the end of the first.
     let after = |polls, seed| {
         let mut periods = Periods::new(1, every);
         let result = check_plan(&mut periods, START, polls, seed);
@@ -367,7 +367,7 @@ fn check_calls_silence_after_four_horizons() {
     assert_eq!(after(6, seed).1, Err(BrokenPromise::Silent { sensor: 0 }));
 }
 
-// A deadline as far ahead as the horizon is no jump of the clock.
+// A deadline as far ahead as the horizon does not count as a jump of the clock.
 #[test]
 fn deadline_at_the_horizon_is_no_jump() {
     let every = Micros::from_millis(50);

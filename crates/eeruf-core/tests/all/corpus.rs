@@ -1,15 +1,14 @@
-//! A corpus of rings for ports that cannot call Rust: what happens to each ring, and its events.
-//! `EERUF_CORPUS=FILE` writes it, for `c/micropython/test_corpus.py`. The tree keeps its [`golden`], which
-//! `EERUF_WRITE=1` writes.
+//! A corpus of rings for ports that cannot call Rust: the inputs and events of each ring. `EERUF_CORPUS=FILE` writes
+//! it, for `c/micropython/test_corpus.py`. The repository keeps its [`golden`] part, which `EERUF_WRITE=1` writes.
 //!
 //! Lines: `#` the name of a ring; `S` a schedule: period, phases, then the firing times by phase; `V` requirements
 //! (`t_delta`, interval, window, neighbours, layout, stale echo), then separation and window, both 0 if not met; `L`
 //! how a ring listens (`t_delta`, window, blanking, consecutive, path change, audible) and its start. Then echoes `E`,
 //! echoes between two instants `I`, stuck lines `K`, corrected firings `F`, silence `G`, sensors enabled or not `N`,
 //! restarts `R`, another path change `C` or `audible` `A`, and polls `P` with the deadline after it and the event, if
-//! there is one. `O`: the state before a sensor at an instant: kind, echo, age, reason, explanation. 2^32 - 1 stands
-//! for no echo, and where a ring listens for the default; as the explanation of a reading 254 stands for history and
-//! 255 for none. Flow rings follow: see [`flow`]. Rings named `between` have lines `I`.
+//! there is one. `O`: the state in front of a sensor at an instant: kind, echo, age, reason, explanation. 2^32 - 1
+//! stands for no echo, or in `L` for the default; as the explanation of a reading 254 stands for history and 255 for
+//! none. Flow rings follow: see [`flow`]. Rings named `between` have lines `I`.
 
 mod flow;
 mod golden;
@@ -121,7 +120,7 @@ fn flat(event: &RingEvent) -> Vec<u32> {
     }
 }
 
-/// A schedule whose crosstalk mostly moves, and the `t_delta` and window that it was verified for.
+/// A schedule for which crosstalk mostly moves, with the `t_delta` and window that it was verified for.
 fn schedule(r: &mut Random, text: &mut Text, phases: u32) -> (u32, u32, Vec<Vec<Micros>>) {
     let sensors = r.within(1, 6);
     let period = r.within(30_000, 90_000);
@@ -156,7 +155,7 @@ fn verify(r: &mut Random, text: &mut Text, schedule: Schedule<K>) -> (Schedule<K
     }
 }
 
-/// Events around a ring, and sounds of its sensors: something before each, or one path from each to the next.
+/// Events around a ring, and its sounds: an obstacle in front of each sensor, or one path from each to the next.
 struct World {
     now: u32,
     late: u32,
@@ -224,7 +223,7 @@ impl World {
     fn heard(&mut self) -> Vec<(u32, u8)> {
         let now = self.now;
         if self.echoes.len() > 200 {
-            // From a time that the clock has left.
+            // They belong to the time before the jump.
             self.echoes.clear();
         }
         let mut heard = vec![];
@@ -347,7 +346,7 @@ fn operate<const M: usize>(r: &mut Random, text: &mut Text, ring: &mut Scheduled
             text.add('A', [audible]);
             ring.set_audible(Micros::new(audible)).unwrap();
         }
-        // Of a firing whose reading may be out.
+        // The reading of this firing may have been emitted.
         3 | 4 => correct(text, ring, sensor, now.wrapping_sub(r.duration(100_000))),
         what => {
             let on = what > 6;
@@ -381,7 +380,7 @@ fn run_table(seed: u64, text: &mut Text, looks: u32) {
     }
 }
 
-/// The corpus, with this many rings of tables from the first seeds.
+/// The corpus, with this many rings with tables from the first seeds.
 fn corpus(rings: u64) -> String {
     let mut text = Text(String::new());
     for seed in (0..rings).chain(RARE) {

@@ -10,7 +10,7 @@ use eeruf_core::{Edge, EdgeQueue, Instant};
 
 use crate::common::random::Random;
 
-/// An edge all of whose parts depend on this number.
+/// An edge whose fields all depend on this number.
 fn edge(n: u32) -> Edge {
     Edge { sensor: (n * 37 % 128) as u8, high: n % 3 == 0, at: Instant::from_micros(n.wrapping_mul(0x9e37_79b1)) }
 }
@@ -25,7 +25,7 @@ fn pass<const N: usize>(edges: u32, seed: u64) -> u8 {
             let mut random = Random(seed);
             for n in 0..edges {
                 queue.push(edge(n));
-                // Elsewhere the next turn may be long in coming.
+                // Outside Miri the next turn may be far off.
                 if cfg!(miri) && random.up_to(2) == 0 {
                     thread::yield_now();
                 }
@@ -34,7 +34,7 @@ fn pass<const N: usize>(edges: u32, seed: u64) -> u8 {
         });
         let mut next = 0;
         loop {
-            // Asked before the queue: what was pushed until then is in it.
+            // Read before the queue, which then holds all edges pushed before.
             let is_last = done.load(Ordering::Acquire);
             while let Some(found) = queue.pop() {
                 // Some may have been lost between.
@@ -53,7 +53,7 @@ fn pass<const N: usize>(edges: u32, seed: u64) -> u8 {
     queue.lost()
 }
 
-// Edges pass from one thread to another whole in order and none is lost uncounted.
+// Edges pass from one thread to another whole and in order, and every lost edge is counted.
 #[test]
 fn edges_pass_between_threads_in_order() {
     let (rounds, edges) = if cfg!(miri) { (1, 40) } else { (4, 250) };

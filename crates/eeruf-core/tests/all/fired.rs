@@ -1,4 +1,4 @@
-//! The true instant of a firing, if the caller reports it.
+//! Firings whose true instant the caller reports.
 
 use eeruf_core::tables::PAPER_12;
 use eeruf_core::{Instant, Micros, PeriodStats, ReadingKind, Ring, RingConfig, RingEvent, ScheduledRing, SensorError};
@@ -13,7 +13,7 @@ fn ring() -> ScheduledRing<'static, 12> {
     Ring::new(&PAPER_12, RingConfig::new().with_window(Micros::from_millis(40)), at(0)).unwrap()
 }
 
-/// The result of a run in which firing `n` comes `late(n)` us after its poll, and its echo 9 ms later.
+/// The result of a run in which firing `n` happens `late(n)` us after its poll, and its echo comes 9 ms later.
 struct Run {
     fired: Vec<(u8, u32)>,
     /// The scheduled instants, without any lateness.
@@ -81,10 +81,10 @@ fn echo_times_count_from_the_firing() {
     }
 }
 
-// An instant said after the poll counts as lateness of the poll does.
+// An instant reported after the poll counts like lateness of the poll.
 #[test]
 fn instant_after_the_poll_counts_as_lateness() {
-    // The third of a group that fires together is late by 40 us, or said to be.
+    // The sixth firing of twelve is 40 us late, or reported as late.
     let late = |n: u32| u32::from(n % 12 == 5) * 40;
     let said = run(480, late);
     let mut polled = Run { fired: vec![], planned: vec![], accepted: 0, echoes: vec![], stats: vec![] };
@@ -93,7 +93,7 @@ fn instant_after_the_poll_counts_as_lateness() {
     while n < 480 {
         let due = ring.next_deadline().as_micros();
         now = now.max(due);
-        // What is due and can be emitted before the firing is emitted on time.
+        // Events due before the firing are emitted on time.
         let mut probe = ring.clone();
         if matches!(probe.poll(at(now)), Some(RingEvent::Fire { .. })) {
             now += late(n);
@@ -153,7 +153,7 @@ fn whatever_the_instants_that_are_said_no_crosstalk_is_accepted() {
                     let true_instant = now + random.up_to(most);
                     arrivals.push(((sensor + ahead) % 12, true_instant + path));
                     if seed % 2 == 1 && random.up_to(50) == 0 {
-                        // Said too late, after the next poll.
+                        // Reported too late, after the next poll.
                         unsaid = Some((sensor, true_instant));
                     } else {
                         ring.fired(sensor, at(true_instant)).unwrap();

@@ -1,4 +1,4 @@
-//! Promises of immediate refiring to a ring, one at a time; the slower test of the whole contract is in `contract`.
+//! Promises of immediate refiring to a ring, one by one; `contract` has the slower test of the whole contract.
 
 use eeruf_core::tables::TABLE_I_D;
 use eeruf_core::{
@@ -65,7 +65,7 @@ fn end_of_period_is_a_deadline() {
     assert_eq!((refiring.deadline(), refiring.next_firing()), (at(100), None));
 }
 
-// A disabled sensor does not fire until it is enabled and none while all pause.
+// A disabled sensor does not fire until it is enabled, and no sensor fires during a pause.
 #[test]
 fn disabled_sensor_does_not_fire_until_enabled() {
     let schedule = schedule();

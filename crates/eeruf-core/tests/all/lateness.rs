@@ -1,4 +1,4 @@
-//! Lateness as a ring reports it, and constant lateness, which costs nothing. Its effect on crosstalk is in `sound`.
+//! Lateness that a ring reports, and constant lateness, which costs no readings. Its effect on crosstalk is in `sound`.
 
 use eeruf_core::tables::TABLE_I_D;
 use eeruf_core::{Instant, Micros, PeriodStats, ReadingKind, Ring, RingConfig, RingEvent, Schedule, ScheduledRing};

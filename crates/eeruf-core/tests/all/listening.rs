@@ -1,4 +1,4 @@
-//! Listening of a ring: which edges are the echo of a firing, to the microsecond.
+//! Edges that count as the echo of a firing, to the microsecond.
 
 use eeruf_core::{
     Instant, Micros, Reading, ReadingKind, Ring, RingConfig, RingError, RingEvent, Schedule, ScheduledRing,
@@ -43,7 +43,7 @@ fn reading(ring: &mut ScheduledRing<'_, 2>) -> (Instant, Reading) {
     panic!("sensor 0 has no reading");
 }
 
-/// Reading of a new ring with edges this long after the firing: the kind, the echo time, and the instant of emission.
+/// The first reading of a ring with edges this long after the firing: kind, echo time, and instant of emission.
 fn heard(edges: &[u32]) -> (ReadingKind, Option<u32>, u32) {
     let schedule = schedule();
     let mut ring = ring(&schedule);
@@ -91,7 +91,7 @@ fn late_edge_is_reported_once() {
     ring.set_silence(eeruf_core::Silence::Trusted);
     let fired = fire(&mut ring);
     assert_eq!(reading(&mut ring).1.kind, ReadingKind::NoEcho);
-    // Its window is closed, and it is no late echo either.
+    // The window is closed, but the edge is not late either.
     ring.echo(0, fired + Micros::new(WINDOW)).unwrap();
     for late in [WINDOW + 1, WINDOW + 2] {
         ring.echo(0, fired + Micros::new(late)).unwrap();
@@ -99,7 +99,7 @@ fn late_edge_is_reported_once() {
     let (now, got) = reading(&mut ring);
     assert_eq!((got.kind, got.t_echo), (ReadingKind::Late, Some(Micros::new(WINDOW + 1))));
     assert_eq!((got.period, now.since(fired)), (0, Micros::new(WINDOW + 1)));
-    // The next reading is of the next firing: silence again, which the late edge has not made unlike the one before.
+    // The next reading is of the next firing: silence again, and the late edge does not break the run.
     let next = reading(&mut ring).1;
     assert_eq!((next.kind, next.period), (ReadingKind::Clear, 1));
 }
@@ -120,7 +120,7 @@ fn a_late_edge_is_reported_at_once_when_no_sensor_listens() {
 fn high_line_makes_its_firing_stuck() {
     let schedule = schedule();
     let mut ring = ring(&schedule);
-    // Before it has fired there is nothing to be stuck.
+    // A sensor that has not fired cannot be stuck.
     ring.stuck(0).unwrap();
     let fired = fire(&mut ring);
     ring.stuck(0).unwrap();
@@ -157,7 +157,7 @@ fn held_line_counts_as_silent_once_it_has_fallen() {
         kind
     };
     assert_eq!(next(false, false, false, Some(9_000)), First);
-    // Until the line falls there is no silence, and what is heard next is compared with no echo from before.
+    // Until the line falls there is no silence, and the next echo is compared with none before it.
     assert_eq!(next(true, false, false, None), NoEcho);
     assert_eq!(next(true, false, false, Some(9_000)), First);
     assert_eq!([next(true, false, true, None), next(true, false, false, None)], [NoEcho; 2]);
@@ -237,7 +237,7 @@ fn echoes_of_one_poll_are_emitted_by_firing_order() {
             }
         }
         let edge = ring.next_deadline();
-        // Edges are handed in by sensor, either of which may have fired first.
+        // Edges are reported in order of sensors, either of which may have fired first.
         for sensor in [0, 1] {
             ring.echo(sensor, edge).unwrap();
         }
@@ -254,7 +254,7 @@ fn several_echoes_are_heard_until_window_closes() {
     let schedule = schedule();
     let config = RingConfig::new().with_t_delta(Micros::new(500)).with_window(Micros::new(WINDOW)).with_echoes::<2>();
     let mut ring = Ring::<_, _, 2, 2>::unverified(&schedule, config, Instant::from_micros(0)).unwrap();
-    // Another first echo each time, and the same second one.
+    // The first echo differs each time, the second is the same.
     let mut first = [4_000, 6_000, 8_000].into_iter();
     let (mut fired, mut read) = (Instant::from_micros(0), vec![]);
     while read.len() < 3 {
@@ -277,7 +277,7 @@ fn several_echoes_are_heard_until_window_closes() {
     assert_eq!(read, expected);
 }
 
-/// Reason why a ring of two sensors with room for `K`, and such a flow ring, are refused, if they are.
+/// Reasons why a ring and a flow ring of two sensors with room for `K` are refused, if they are.
 fn refused<const K: usize>() -> [Option<RingError>; 2] {
     let (schedule, now) = (schedule(), Instant::from_micros(0));
     let config = RingConfig::new().with_t_delta(Micros::new(500)).with_window(Micros::new(WINDOW));

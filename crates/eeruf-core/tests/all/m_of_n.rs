@@ -17,8 +17,8 @@ const BEGIN: Instant = Instant::from_micros(u32::MAX - 2_000_000);
 /// Number of a sensor's readings, and of those accepted.
 type Counts = (u32, u32);
 
-/// Runs a ring for four seconds whose loop is late by up to `late` us; `operates` performs operations on it. `sound`
-/// gives the sensors that hear a firing, with the delays in us, by the time since the beginning.
+/// Runs a ring for four seconds in a loop that is late by up to `late` us; `operates` performs operations on it.
+/// `sound` gives the sensor that hears a firing at this time since the beginning, with the delay in us.
 fn run<J: Judge>(
     judge: J,
     speed_mm_s: u32,
@@ -30,7 +30,7 @@ fn run<J: Judge>(
     let (window, mut turns) = (Micros::from_millis(25), TurnSettings::new(1 + random.up_to(1_000_000)));
     let audible = turns.most;
     if operates {
-        // With less dice and quiet there is more that is heard, and that agrees.
+        // With less randomness and quiet, more is heard, and more agrees.
         turns.dice = Micros::new([0, 200, 2_000][random.up_to(2) as usize]);
         turns.most = if random.up_to(1) == 0 { turns.least } else { turns.most };
     }
@@ -85,7 +85,7 @@ fn run<J: Judge>(
     counts
 }
 
-/// Readings of a receiver without a wall that hears one path, which changes as fast as it may.
+/// Readings of a receiver that has no wall and hears one path, which changes as fast as allowed.
 fn one_path<J: Judge>(judge: J, speed_mm_s: u32, seed: u32) -> Counts {
     let mut random = Random(seed.into());
     let late = [0, 50, 1000, 5000][random.up_to(3) as usize];
@@ -119,7 +119,7 @@ fn one_path_of_foreign_sound_never_has_votes() {
             for seed in 1..=rings {
                 let (of, accepted) = one_path(votes(m, n, speed_mm_s), speed_mm_s, seed);
                 (readings, wrong) = (readings + of, wrong + accepted);
-                // Of votes that nobody asks about; they do not learn that it moves.
+                // Votes without explanations, which do not learn that the robot moves.
                 agreed += if speed_mm_s == 0 { one_path(Agreement(votes(m, n, 0)), 0, seed).1 } else { 0 };
             }
             println!("{m} of {n}, {speed_mm_s} mm/s: {readings} readings, {wrong} accepted; {agreed} by agreement");
@@ -242,7 +242,7 @@ fn judges_refuse_votes_out_of_their_range() {
     assert_eq!(MedianFilter::<1>::new(4, T_DELTA).unwrap_err().to_string(), "of is 4; expected 1 to 3");
 }
 
-/// The earlier firing that the judge asked about.
+/// Records the earlier firing that the judge asked about.
 struct Asked(std::cell::Cell<Option<u8>>);
 
 impl Sounds for Asked {
@@ -260,7 +260,7 @@ impl Sounds for Asked {
     }
 }
 
-// The ring asks about firings: a firing that is held, and then silent, is one of them.
+// A firing whose line is held and that is then silent counts as one of the earlier firings.
 #[test]
 fn held_firing_is_one_of_those_before() {
     for falls in [false, true] {

@@ -9,7 +9,7 @@ mod contract;
 mod corpus;
 mod edges;
 mod fired;
-// A binary of its own where the features are tested by themselves; here too, for mutants.
+// Also a separate binary, where the features are tested alone; here for mutation tests.
 mod flow;
 #[cfg(feature = "serde")]
 #[path = "../formats.rs"]

@@ -9,9 +9,9 @@ const PERIOD: i64 = 100_000;
 /// Change of an echo at 1 m/s towards a wall, in nanoseconds a millisecond.
 const AT_1_M_S: i64 = 5_828;
 
-/// Drives at `mm_s`; each sensor hears the one `further` places on (0 for its own wall) along a path that is `length`
-/// long in the middle of the run and gets shorter at `path_mm_s`. Polls on time and knows its odometry. Returns the
-/// receivers that accepted anything, the readings that they accepted, and all that were compared.
+/// Drives at `mm_s`, polling on time with odometry. Each sensor hears the sensor `further` places on (0 for its own
+/// wall) along a path of `length` in the middle of the run, shortening at `path_mm_s`. Returns the numbers of receivers
+/// that accepted anything, of accepted readings, and of compared readings.
 fn run(mm_s: i64, path_mm_s: i64, further: usize, length: i64) -> (usize, u32, u32) {
     let fires = |x: usize, number: i64| {
         let t_fire = PAPER_12.t_fire(Phase((number % 2) as u8), x).unwrap();
@@ -24,7 +24,7 @@ fn run(mm_s: i64, path_mm_s: i64, further: usize, length: i64) -> (usize, u32, u
     let mut ring = Ring::new(&PAPER_12, RingConfig::new(), Instant::from_micros(0)).unwrap();
     let (mut fired, mut changes) = ([0_i64; SENSORS], [0; SENSORS]);
     let (mut accepted, mut compared) = ([0; SENSORS], 0);
-    // The edge that is still to come of each sensor.
+    // The pending edge of each sensor.
     let mut edges = [i64::MAX; SENSORS];
     loop {
         let due = i64::from(ring.next_deadline().as_micros());
@@ -60,7 +60,7 @@ fn run(mm_s: i64, path_mm_s: i64, further: usize, length: i64) -> (usize, u32, u
 #[test]
 fn odometry_accepts_no_single_path_on_time() {
     let mut all = 0;
-    // Fixed paths, and those that change as an own wall does while that is within P: up to 1.38 m/s.
+    // Fixed paths, and paths that change like a sensor's own wall while that is within P: up to 1.38 m/s.
     let fixed = [750, 1_000, 1_500, 2_000, 3_000].map(|mm_s| (mm_s, 0));
     for (mm_s, path_mm_s) in fixed.into_iter().chain([500, 750, 1_000, 1_300].map(|mm_s| (mm_s, mm_s))) {
         let (mut pairs, mut readings) = (0, 0);

@@ -1,4 +1,4 @@
-//! Combinations of two features: limits of single sensors, many phases, several echoes, adaptation.
+//! Pairs of features combined: limits of single sensors, many phases, several echoes, adaptation.
 
 use eeruf_core::{
     EachSensor, Instant, Micros, ReadingKind, Requirements, Ring, RingConfig, RingEvent, Uneven, VerifiedSchedule,
@@ -29,13 +29,13 @@ static CORNER: VerifiedSchedule<2, 2, EachSensor<2>> = schedule! {
     each_meets: LIMITS,
 };
 
-/// Echoes of a sensor's firing by its number: one that never repeats, a wall, and one beyond the short window.
+/// Echoes of a sensor's n-th firing: one that never repeats, a wall, and one beyond the short window.
 fn echoes(sensor: u8, firing: u32) -> [Micros; 3] {
     let wall = if sensor == 0 { 30_000 } else { 10_000 };
     [Micros::new(3_000 + 2_500 * (firing % 3)), Micros::new(wall), Micros::new(wall + 10_000)]
 }
 
-/// The echo times that a ring accepts of its first two sensors in ten seconds, if their first `heard` echoes arrive.
+/// The echo times accepted from a ring's first two sensors in ten seconds, if their first `heard` echoes arrive.
 fn accepted<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize>(
     ring: &mut Ring<P, J, K, E, H>,
     heard: usize,
@@ -65,7 +65,7 @@ fn accepted<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize>(
     }
 }
 
-/// Checks that each reading accepted of the first two sensors is its wall.
+/// Checks that each accepted reading of the first two sensors is its wall.
 fn are_walls(accepted: &[Vec<u32>; 2]) {
     for (times, wall) in accepted.iter().zip([30_000, 10_000]) {
         assert!(times.len() > 20 && times.iter().all(|&time| time == wall), "{times:?}");
@@ -76,7 +76,7 @@ fn are_walls(accepted: &[Vec<u32>; 2]) {
 fn limits_go_with_several_echoes() {
     let config = RingConfig::new().with_echoes::<3>();
     let mut ring = Ring::new(&CORNER, config, BEGIN).unwrap();
-    // Beyond the second sensor's window nothing is heard; of the first the earliest that repeats counts.
+    // The second sensor hears nothing beyond its window; for the first, the earliest echo that repeats counts.
     are_walls(&accepted(&mut ring, 3, |_, _| ()));
 }
 
@@ -97,7 +97,7 @@ fn limits_go_with_adaptation() {
             adaptation.adapt(stats, |schedule| ring.change_schedule(schedule)).unwrap();
         }
     });
-    // All is rejected, so that it fires more slowly, and each sensor listens as before.
+    // All readings are rejected, so the ring slows down; each sensor listens as before.
     assert_eq!(ring.schedule().period(), Micros::from_millis(80));
     assert_eq!((ring.window_of(0), ring.window_of(1)), (Micros::from_millis(50), Micros::from_millis(12)));
 }

@@ -1,4 +1,4 @@
-//! Every plan works with every judge, including one of the caller's own.
+//! Every plan works with every judge, including a custom one.
 
 use eeruf_core::{
     EchoFilter, Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent,
@@ -12,7 +12,7 @@ const SENSORS: usize = 8;
 const BEGIN: Instant = Instant::from_micros(0);
 const CONFIG: RingConfig = RingConfig::new().with_window(Micros::from_millis(30));
 
-/// A judge that accepts every third echo of a sensor and calls all others clear.
+/// A judge that accepts every third echo of a sensor and reports clear otherwise.
 #[derive(Default)]
 struct EveryThird {
     readings: [u8; SENSORS],
@@ -58,7 +58,7 @@ fn in_turn() -> InTurn<SENSORS> {
     InTurn::new(SENSORS, TurnSettings::new(1), Micros::from_millis(30), BEGIN).unwrap()
 }
 
-/// The share of readings accepted in two seconds, each sensor before its own wall.
+/// The share of readings accepted in two seconds, with a wall for each sensor.
 fn accepted<P: Plan, J: Judge>(plan: P, judge: J) -> f64 {
     let mut ring = Ring::<P, J, 12>::judged_by(plan, judge, CONFIG, BEGIN).unwrap();
     let (mut readings, mut accepted) = (0, 0);
@@ -121,7 +121,7 @@ fn a_judge_is_asked_to_restart_with_the_ring() {
     assert_eq!(ring.judge().restarts, 1);
 }
 
-// A judge whose t delta is no shorter than the window is refused.
+// A judge whose `t_delta` is no shorter than the window is refused.
 #[test]
 fn judge_with_t_delta_of_a_window_is_refused() {
     let coarse = EchoFilter::<12>::new(Micros::from_millis(30), 2).unwrap();

@@ -1,5 +1,5 @@
-//! Promises of a ring and its plans that were once broken: intervals through restarts and changes, firing after long
-//! silences, sizes and settings that do not fit.
+//! Promises of a ring and its plans that were once broken: intervals across restarts and changes, firing after long
+//! silences, and refusal of sizes and settings that do not fit.
 
 use std::hash::{BuildHasher, BuildHasherDefault, DefaultHasher};
 
@@ -48,7 +48,7 @@ fn least_interval(fired: &[(u8, u32)]) -> u32 {
     fired.windows(2).filter(|pair| pair[0].0 != pair[1].0).map(|pair| pair[1].1 - pair[0].1).min().unwrap()
 }
 
-// A restart keeps the smallest interval where it is longer than refire time and half a period.
+// A restart keeps the smallest interval even if it exceeds the refire time and half a period.
 #[test]
 fn restart_keeps_an_interval_longer_than_refire() {
     let schedule = verified(48, [0, 40], [43, 0], 40);
@@ -87,7 +87,7 @@ fn unverified_schedule_keeps_its_intervals_on_restart() {
     assert!(least_interval(&fired) >= 40_000, "{fired:?}");
 }
 
-/// Time that scheduled firing alone, polled every 10 ms from `now` on, takes to fire.
+/// Time until scheduled firing without a ring fires, polled every 10 ms from `now` on.
 fn time_to_fire(plan: &mut ScheduledFiring<'_, 12>, mut now: Instant) -> Micros {
     let start = now;
     loop {
@@ -99,7 +99,7 @@ fn time_to_fire(plan: &mut ScheduledFiring<'_, 12>, mut now: Instant) -> Micros 
     }
 }
 
-// Scheduled firing alone goes on after a pause of forty minutes.
+// Scheduled firing without a ring goes on after a pause of forty minutes.
 #[test]
 fn firing_goes_on_after_forty_minutes_of_pause() {
     let mut plan = ScheduledFiring::new(&TABLE_I_D, Instant::from_micros(0));
@@ -136,12 +136,12 @@ fn forty_minutes_without_sensors_do_not_delay_a_restart() {
     }
     plan.set_paused(false);
     plan.restart(now);
-    // Whoever sleeps until then wakes soon.
+    // The deadline is near.
     assert!(plan.deadline().since(now) <= ms(200));
     assert!(time_to_fire(&mut plan, now) <= ms(200));
 }
 
-// Periods in which nothing fires are caught up with if the poll is no more than one late.
+// Empty periods are caught up with if the poll is at most one period late.
 #[test]
 fn empty_periods_are_caught_up_one_late() {
     for (late, ended) in [(ms(99), 1), (ms(100), 2), (Micros::new(100_001), 1), (ms(60_000), 1)] {
@@ -172,13 +172,13 @@ fn outlasts_a_step_back(back: u32) -> bool {
     }
 }
 
-// A clock that steps back until three periods are left has not jumped and one microsecond more is a jump.
+// A step back of the clock by up to three periods is no jump; one microsecond more is one.
 #[test]
 fn step_back_to_three_periods_is_no_jump() {
     assert_eq!([20_001, 60_000, 60_001].map(outlasts_a_step_back), [true, true, false]);
 }
 
-// A reading is of the period and phase in which its sensor fired.
+// A reading has the period and phase in which its sensor fired.
 #[test]
 fn reading_is_of_its_firings_period_and_phase() {
     // The window closes in the next period, which is of the other phase.
@@ -224,7 +224,7 @@ fn a_schedule_with_room_for_300_sensors_fires_those_that_it_has() {
     assert_eq!(fired, [0, 1, 2].repeat(4));
 }
 
-// A ring takes no larger t delta than its schedule was verified for at the start or later.
+// A ring takes no larger `t_delta` than its schedule was verified for, at the start or later.
 #[test]
 fn ring_takes_no_larger_t_delta_than_verified() {
     let good = TABLE_I_D.verified(&Requirements::new(Micros::new(999))).unwrap();
@@ -245,7 +245,7 @@ fn ring_takes_no_larger_t_delta_than_verified() {
     assert_eq!(running.t_delta(), Micros::new(500));
 }
 
-// A ring listens no longer than its schedule was verified for at the start or later.
+// A ring listens no longer than its schedule was verified for, at the start or later.
 #[test]
 fn ring_listens_no_longer_than_verified() {
     let verified =
@@ -262,13 +262,13 @@ fn ring_listens_no_longer_than_verified() {
     running.set_window(ms(40)).unwrap();
     assert_eq!(running.change_schedule(&short), Ok(()));
     assert_eq!(running.set_window(ms(50)), Err(refused));
-    // One that nobody verified holds it to the time until a sensor fires again.
+    // An unverified schedule limits the window to the time until a sensor fires again.
     let mut running = Ring::unverified(&TABLE_I_D, CONFIG, Instant::default()).unwrap();
     assert_eq!(running.set_window(ms(76)), Ok(()));
     assert_eq!(running.set_window(ms(77)), Err(RingError::Window { window: ms(77), min_refire: ms(76) }));
 }
 
-// T delta and blanking are shorter than the window at the start and later.
+// `t_delta` and blanking are shorter than the window, at the start and later.
 #[test]
 fn t_delta_and_blanking_are_below_the_window() {
     let start = |config| Ring::unverified(&TABLE_I_D, config, Instant::default()).unwrap_err().to_string();
@@ -284,7 +284,7 @@ fn t_delta_and_blanking_are_below_the_window() {
     assert_eq!((ring.t_delta(), ring.window(), ring.blanking()), (ms(1), ms(5), ms(3)));
 }
 
-// A schedule that was not verified needs t delta and window said.
+// An unverified schedule needs explicit `t_delta` and window.
 #[test]
 fn unverified_schedule_needs_t_delta_and_window() {
     for config in [RingConfig::new(), RingConfig::new().with_window(ms(5)), RingConfig::new().with_t_delta(ms(1))] {
@@ -294,13 +294,13 @@ fn unverified_schedule_needs_t_delta_and_window() {
             "a schedule that was not verified; expected both t_delta and window in the configuration"
         );
     }
-    // A verified one is held to what it was verified for, by whatever way it comes.
+    // A verified schedule keeps its limits, whichever constructor takes it.
     let verified = TABLE_I_D.verified(&Requirements::new(Micros::new(999))).unwrap();
     assert!(Ring::unverified(&verified, CONFIG, Instant::default()).is_err());
     assert!(Ring::unverified(&verified, RingConfig::new(), Instant::default()).is_ok());
 }
 
-// Immediate refiring holds back for any refire time that the clock can tell.
+// Immediate refiring keeps any refire time that the clock can tell.
 #[test]
 fn immediate_refiring_takes_any_refire_time() {
     for min_refire in [ms(100_000), Micros::MAX] {
@@ -366,7 +366,7 @@ fn schedules_are_equal_by_their_times_verified_or_not() {
     }
 }
 
-// The papers ring of twelve is verified for 17 ms between neighbours.
+// The paper's ring of twelve is verified for 17 ms between neighbours.
 #[test]
 fn papers_ring_is_verified_for_17_ms() {
     assert_eq!(PAPER_12.verified_for().min_interval, Micros::from_millis(17));
@@ -387,8 +387,8 @@ fn schedules_hash_as_they_compare() {
     assert!(TABLE_I_A != TABLE_I_D && hash(&TABLE_I_A) != hash(&TABLE_I_D));
 }
 
-/// The kind of the first reading of sensor 1 after this long without a poll, if two readings agree whose echo times
-/// exceed the audible time.
+/// The kind of the first reading of sensor 1 after this many minutes without a poll, if it agrees with the one before
+/// and both echo times exceed the audible time.
 fn across_a_sleep(minutes: u32) -> ReadingKind {
     let config = RingConfig::new().with_audible(ms(10));
     let mut ring = Ring::new(&PAPER_12, config, Instant::from_micros(0)).unwrap();
@@ -396,7 +396,7 @@ fn across_a_sleep(minutes: u32) -> ReadingKind {
     loop {
         if awake && kinds.len() == 4 {
             awake = false;
-            // Close to the end of the period, which comes before the sensor's next firing.
+            // Close to the end of the period, which precedes the sensor's next firing.
             while !matches!(ring.upcoming().next(), Some(Upcoming { sensor: 0, .. })) {
                 now = ring.next_deadline();
                 ring.poll(now);

@@ -1,4 +1,4 @@
-//! Settings in the wrong unit, which are refused, and a blanking time that is shorter than at the start.
+//! Settings in the wrong unit, which are refused, and a blanking time shorter than at the start.
 
 use eeruf_core::{
     Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent,
@@ -50,8 +50,8 @@ fn settings_in_the_wrong_unit_are_refused_with_the_likely_cause() {
     );
 }
 
-/// With a blanking time shorter than at the start, a sensor that rests no longer than its window hears sound of its
-/// last firing but one, beyond R less its rest; all of it must count as foreign.
+/// With a blanking time shorter than at the start, a sensor that rests no longer than its window hears its
+/// second-to-last firing later than R minus its rest; all such sound must count as foreign.
 #[test]
 fn a_shorter_blanking_time_lets_no_stale_echo_in() {
     let (rest, begun) = (Micros::from_millis(25), Micros::from_millis(9));

@@ -15,7 +15,7 @@ const fn ms(ms: u32) -> Micros {
     Micros::from_millis(ms)
 }
 
-/// The rows below the header of the table whose header begins with `first`, cell by cell.
+/// The cells of each row below the header of the table whose header begins with `first`.
 fn table(first: &str) -> Vec<Vec<&'static str>> {
     let mut lines = THEORY.lines().skip_while(|line| !line.starts_with(&format!("| {first} |")));
     let cells = |line: &'static str| line.trim_matches('|').split('|').map(str::trim).collect::<Vec<_>>();
@@ -25,7 +25,7 @@ fn table(first: &str) -> Vec<Vec<&'static str>> {
     [vec![header], rows].concat()
 }
 
-/// A row of a figure: a name, then numbers under each other.
+/// A row of a figure: a name, then numbers in columns.
 fn row(name: &str, places: usize, width: usize, numbers: impl Iterator<Item = i32>) -> String {
     numbers.fold(format!("{name:<places$}"), |row, number| format!("{row}{number:>width$}"))
 }
@@ -68,7 +68,7 @@ fn best_interval(search: &WaitSearch) -> Found<24> {
     search.best_interval(&mut memory, &mut Budget::unlimited()).expect("memory suffices")
 }
 
-// Section 2 crosstalk from sensor 1 to 2 of table i d reads what the example says.
+// Section 2: crosstalk from sensor 1 to 2 of Table I-d reads as in the example.
 #[test]
 fn section_2_example_of_table_i_d_holds() {
     assert_eq!((TABLE_I_D.shift_us(0), TABLE_I_D.shift_us(1)), (6_000, 12_000));
@@ -83,7 +83,7 @@ fn section_2_example_of_table_i_d_holds() {
     assert_eq!((wait(a, 0), wait(a, 11), wait(b, 0), wait(b, 11)), (ms(24), ms(24), ms(0), ms(22)));
 }
 
-// Section 3 the difference of two sizes is the smaller of difference and sum.
+// Section 3: the difference of two sizes is the smaller of difference and sum.
 #[test]
 fn section_3_difference_of_two_sizes_holds() {
     for (p, q) in (-20_i32..=20).flat_map(|p| (-20_i32..=20).map(move |q| (p, q))) {
@@ -115,7 +115,7 @@ fn section_3_the_smallest_intervals_of_table_i_are_as_tabled() {
     assert!(THEORY.contains(&format!("b = {}", b.collect::<Vec<_>>().join(" "))));
 }
 
-// Section 4 table i d rejects stale echoes and a sensor that alternates nothing does not.
+// Section 4: Table I-d rejects stale echoes; a sensor that alternates nothing does not.
 #[test]
 fn section_4_table_i_d_rejects_stale_echoes() {
     let stale = Requirements { stale_echo: true, ..Requirements::new(Micros::new(999)) };
@@ -130,14 +130,14 @@ fn section_5_1_the_simple_bounds_are_as_computed() {
     assert_eq!(bound(&needs(12, Layout::Line(4), 60)), ms(60 + 2 * 11));
     assert_eq!(bound(&needs(4, Layout::Line(4), 15)), ms(60));
     assert!(bound(&needs(10, Layout::Ring(4), 15)) >= ms(75));
-    // 105 by density, and a tick more since the moves of a permutation sum up to 0 (section 5.3).
+    // 105 by density, and one tick more because the moves of a permutation sum to 0 (section 5.3).
     assert_eq!(bound(&needs(7, Layout::Ring(4), 15)), ms(106));
     // Waits up to 24 ms hold 13 values |d|, and no 14.
     let found = |sensors| best_interval(&waits(sensors, 999, 1000)).schedule.is_some();
     assert!(found(13) && !found(14));
 }
 
-// Section 5 2 the best intervals of the papers lags meet the bound.
+// Section 5.2: the best intervals of the paper's lags meet the bound.
 #[test]
 fn section_5_2_papers_lags_meet_the_bound() {
     for (tick_us, best_us) in [(1000, 19_000), (500, 19_500), (100, 19_500)] {
@@ -154,7 +154,7 @@ fn section_5_2_papers_lags_meet_the_bound() {
     }
 }
 
-// Section 5 2 the construction serves at 82 ms and no shorter period does.
+// Section 5.2: the construction works at 82 ms and at no shorter period.
 #[test]
 fn section_5_2_construction_serves_at_82_ms() {
     let (n, separation, groups) = (4, 2, 3);
@@ -170,7 +170,7 @@ fn section_5_2_construction_serves_at_82_ms() {
     assert_eq!(shortest(&needs, 100_000).period(), ms(82));
 }
 
-// Section 5 3 four neighbours need 60 ms in another order and 66 with a long window.
+// Section 5.3: four neighbours need 60 ms in another order, and 66 ms with a long window.
 #[test]
 fn section_5_3_four_neighbours_need_60_ms() {
     let times = |times: [u32; 4]| times.map(ms);
@@ -200,7 +200,7 @@ fn by_formula(layout: &str, sensors: u32, window: u32) -> u32 {
     classes.max(window + 2 * (sensors - 1)).max(60)
 }
 
-// Section 5 3 the shortest periods are those of the corpus and 28 of 32 follow from formulas.
+// Section 5.3: the shortest periods are those of the corpus, and 28 of 32 follow from formulas.
 #[test]
 fn section_5_3_shortest_periods_are_those_of_the_corpus() {
     let corpus: serde_json::Value =
@@ -230,10 +230,10 @@ fn section_5_3_shortest_periods_are_those_of_the_corpus() {
     assert_eq!(exceptions, [("line", 12, 45), ("ring", 8, 30), ("ring", 12, 45), ("ring", 24, 15)]);
 }
 
-// Section 5 3 counting alone ends below the four that were searched.
+// Section 5.3: counting alone ends below the four that were searched.
 #[test]
 fn section_5_3_counting_ends_below_four_searched() {
-    // Without a node, the bound is what counting says.
+    // Without a search node, the bound comes from counting.
     let bound = |sensors, layout, window| shortest(&needs(sensors, layout, window), 0).bound;
     assert_eq!(bound(12, Layout::Line(4), 45), ms(68));
     assert_eq!(bound(12, Layout::Ring(4), 45), ms(68));
@@ -241,7 +241,7 @@ fn section_5_3_counting_ends_below_four_searched() {
     assert_eq!(bound(24, Layout::Ring(4), 15), ms(68));
 }
 
-// Section 5 5 finer ticks gain half a millisecond for a line of twelve.
+// Section 5.5: finer ticks gain half a millisecond for a line of twelve.
 #[test]
 fn section_5_5_finer_ticks_gain_half_a_millisecond() {
     for (tick_us, period_us) in [(1000, 70_000), (100, 69_500)] {
@@ -251,7 +251,7 @@ fn section_5_5_finer_ticks_gain_half_a_millisecond() {
     }
 }
 
-// Section 6 1 the closed matrix is that of three firings in order.
+// Section 6.1: the closed matrix is that of three firings in order.
 #[test]
 fn section_6_1_closed_matrix_is_of_three_firings() {
     let far = 1000;
@@ -266,7 +266,7 @@ fn section_6_1_closed_matrix_is_of_three_firings() {
     }
 }
 
-// Section 7 the best interval takes a few dozen nodes and three neighbours have 3912 tables.
+// Section 7: the best interval takes a few dozen nodes, and three neighbours have 3912 tables.
 #[test]
 fn section_7_best_interval_takes_few_nodes() {
     assert!(best_interval(&waits(12, 999, 1000)).nodes < 100);

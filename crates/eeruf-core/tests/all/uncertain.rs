@@ -1,4 +1,4 @@
-//! Edges known only to lie within an interval: their readings, and when they say too little.
+//! Edges known only to lie within an interval: their readings, and intervals that are too wide.
 
 use eeruf_core::{
     Instant, Micros, Reading, ReadingKind, Ring, RingConfig, RingError, RingEvent, Schedule, ScheduledRing,
@@ -22,7 +22,7 @@ fn after(fired: Instant, us: i32) -> Instant {
     Instant::from_micros(fired.as_micros().wrapping_add_signed(us))
 }
 
-/// Polls until a reading of sensor 0 is out, and hands in the edges of each of its firings in turn.
+/// Polls until all readings of sensor 0 are emitted, reporting the edges of each of its firings in turn.
 fn readings<const E: usize>(firings: &[&[Between]]) -> Vec<Reading> {
     let schedule = schedule();
     let config = RingConfig::new().with_t_delta(Micros::new(T_DELTA)).with_window(Micros::new(WINDOW));
@@ -74,7 +74,7 @@ fn a_wide_interval_makes_a_reading_late_if_it_may_hold_the_echo() {
     assert_eq!(heard::<1>(&[(-5_000, BLANKING as i32 - 1)]), (NoEcho, None));
     assert_eq!(heard::<1>(&[(-400, BLANKING as i32 - 1)]), (TooEarly, Some(299)));
     assert_eq!(heard::<1>(&[(WINDOW as i32 + 1, 50_001)]), (NoEcho, None));
-    // An echo that came before it is one, and none that came within it or after it.
+    // An echo from before the wide edge counts; one from within it or after it does not.
     assert_eq!(heard::<1>(&[(8_900, 9_100), (9_000, 15_000)]), (First, Some(9_000)));
     assert_eq!(heard::<1>(&[(8_900, 9_102), (9_000, 15_000)]), (Late, None));
     assert_eq!(heard::<1>(&[(9_000, 15_000), (16_000, 16_000)]), (Late, None));
@@ -90,7 +90,7 @@ fn a_late_reading_is_the_base_of_no_pair() {
     let seen = readings::<1>(&[good, good, wide, good, good]);
     assert_eq!(seen.iter().map(|seen| seen.kind).collect::<Vec<_>>(), [First, Accepted, Late, First, Accepted]);
     assert_eq!((seen[2].t_echo, seen[2].previous, seen[2].age), (None, None, Some(1)));
-    // It is a reading of its own, not one that follows another: nothing is known.
+    // It is a reading of its own, not a follow-up of another: nothing is known.
     let mut watch = SensorWatch::<2>::new(0, Instant::default());
     watch.observe(&RingEvent::Reading(Reading { kind: Clear, ..seen[2] }), Instant::default());
     watch.observe(&RingEvent::Reading(seen[2]), Instant::default());
@@ -118,7 +118,7 @@ fn an_echo_that_is_taken_back_takes_its_uncertainty_with_it() {
     assert_eq!(kinds[1..], [ReadingKind::Accepted; 3]);
 }
 
-// Found by fuzzing: an early edge was told of without its time.
+// Found by fuzzing: an early edge was reported without its time.
 #[test]
 fn a_wide_edge_that_is_taken_back_leaves_silence() {
     let schedule = schedule();

@@ -1,5 +1,5 @@
-//! Needs of single sensors and pairs in small rings, against a judge that compares all firings of five periods on one
-//! line of time.
+//! Needs of single sensors and pairs in small rings, checked against a judge that compares all firings of five periods
+//! on one time line.
 
 use eeruf_core::{
     EachSensor, Layout, Micros, Requirements, Schedule, Uneven, VerifiedSchedule,
@@ -109,7 +109,7 @@ fn kinds(report: &Verification<'_, 4>) -> Vec<(ViolationKind, u8, u8)> {
     found
 }
 
-// Each violation of an uneven ring is one that firings on a line of time show and none is missed.
+// The violations of an uneven ring are exactly those that firings on a time line show.
 #[test]
 fn uneven_violations_are_those_of_a_time_line() {
     let mut random = Random(7);
@@ -118,7 +118,7 @@ fn uneven_violations_are_those_of_a_time_line() {
         let sensors = 2 + random.up_to(2) as usize;
         let ring = Ring::random(&mut random, sensors);
         let period = 8 + random.up_to(30);
-        // Together now and then, or hardly any would.
+        // Sometimes let sensors fire together, which random times would hardly ever do.
         let mut times: [Vec<Micros>; 2] =
             [0, 1].map(|_| (0..sensors).map(|_| Micros::new(random.up_to(period - 1))).collect());
         if random.up_to(1) == 0 {
@@ -201,7 +201,7 @@ fn what_makes_no_sense_for_a_ring_is_refused_by_what_it_is() {
     assert!(matches!(too_few, Err(RequirementsError::Set { sensors: 63, .. })));
 }
 
-// A verified schedule allows each sensor its own and all together the least.
+// A verified schedule allows each sensor its own limits, and all of them the strictest.
 #[test]
 fn verified_uneven_schedule_allows_each_its_own() {
     const CORNERS: VerifiedSchedule<3, 2, EachSensor<3>> = schedule! {
@@ -227,7 +227,7 @@ fn verified_uneven_schedule_allows_each_its_own() {
     assert_eq!((of(2), of(3)), (Some((Micros::new(999), Micros::from_millis(40))), None));
     let least = CORNERS.verified_for();
     assert_eq!((least.t_delta, least.window), (Micros::new(499), Micros::from_millis(12)));
-    // The longest that any pair or sensor keeps: the third listens for 40 ms before it fires again.
+    // The longest time that any pair or sensor keeps: the third listens for 40 ms before it fires again.
     assert_eq!((least.min_interval, least.separation), (Micros::from_millis(40), Micros::from_millis(4)));
     let late = Requirements {
         layout: Layout::Line(1),

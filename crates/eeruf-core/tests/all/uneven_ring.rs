@@ -1,4 +1,4 @@
-//! Rings of sensors that are not all alike, as they run.
+//! Running rings of sensors that are not all alike.
 
 use eeruf_core::{
     EachSensor, EchoFilter, Instant, Layout, Micros, ReadingKind, Requirements, Ring, RingConfig, RingError, RingEvent,
@@ -20,7 +20,7 @@ const fn ms<const K: usize>(times: [u32; K]) -> [Micros; K] {
     micros
 }
 
-/// Two sensors that look far and compare coarsely, two that look near, two of which fire together.
+/// Two sensors that look far and compare coarsely, and two that look near; two of the four fire together.
 fn corners() -> VerifiedSchedule<4, 2, EachSensor<4>> {
     let schedule = Schedule::from_firing(Micros::from_millis(60), [ms([0, 5, 40, 40]), ms([2, 12, 24, 24])])
         .expect("it lies within");
@@ -46,14 +46,14 @@ fn each_sensor_listens_and_compares_as_it_was_verified_for() {
     let mut ring: Ring<_, _, 4> = Ring::new(&schedule, RingConfig::new(), Instant::from_micros(0)).unwrap();
     ring.set_silence(eeruf_core::Silence::Trusted);
     let mut random = Random(3);
-    // When each fired, and the echo that it is to hear.
+    // The last firing of each, and the echo that it will hear.
     let mut firings: [Option<(Instant, Option<u32>)>; 4] = [None; 4];
     let mut edges: [Option<Instant>; 4] = [None; 4];
     let mut seen = [0; 4];
     let (mut accepted, mut rejected, mut late) = (0, 0, 0);
     while seen.iter().sum::<u32>() < 20_000 {
         let mut now = ring.next_deadline();
-        // An edge is handed in when it comes, if it comes sooner.
+        // An edge is reported when it comes, if that is sooner.
         for sensor in 0..4_u8 {
             let edge = edges[usize::from(sensor)].filter(|&edge| now.has_reached(edge));
             now = edge.unwrap_or(now);
@@ -69,7 +69,7 @@ fn each_sensor_listens_and_compares_as_it_was_verified_for() {
                 RingEvent::Fire { sensor, .. } => {
                     let window = schedule.limits_of(sensor).unwrap().window.as_micros();
                     assert_eq!(ring.window_of(sensor).as_micros(), window);
-                    // Near the wall that it has seen before, or nowhere near, or beyond the window.
+                    // Near the wall seen before, far from it, or beyond the window.
                     let echo = match random.up_to(5) {
                         0 => None,
                         1 => Some(random.up_to(window + 2_000)),
@@ -165,7 +165,7 @@ fn a_ring_takes_less_than_was_verified_and_not_more() {
     assert_eq!(ring(config.with_window(window)), Err(RingError::VerifiedWindow { window, verified }));
     let (t_delta, verified) = (Micros::new(2_401), Micros::new(2_400));
     assert_eq!(ring(config.with_t_delta(t_delta)), Err(RingError::TDelta { t_delta, verified }));
-    // The one that looks nearest would never hear anything.
+    // The sensor with the shortest window would never hear anything.
     let (blanking, window) = (Micros::from_millis(9), Micros::from_millis(9));
     assert_eq!(ring(config.with_blanking(blanking)), Err(RingError::Blanking { blanking, window }));
 }
@@ -179,7 +179,7 @@ fn a_plan_with_limits_keeps_what_every_plan_promises() {
     }
 }
 
-// An uneven ring is on time while its closest pair can spare it.
+// An uneven ring is on time while its closest pair tolerates the lateness.
 #[test]
 fn uneven_ring_is_on_time_within_its_slack() {
     // Sensors 1 and 2 are 5 ms apart and compare by 2.4 ms, twice; a quarter of the 199 us left over, each period.
@@ -201,13 +201,13 @@ fn uneven_ring_is_on_time_within_its_slack() {
             was_on_time &= ring.is_on_time();
         }
         assert_eq!(was_on_time, on_time, "late by {late} us");
-        // Nothing else sounds, so all are accepted but the first of each.
+        // There is no other sound, so all but each sensor's first reading are accepted.
         let accepted = kinds.iter().filter(|&&kind| kind == ReadingKind::Accepted).count();
         assert_eq!(accepted, kinds.len() - 4, "late by {late} us: {kinds:?}");
     }
 }
 
-/// Four sensors on shared lines, two of which look farther; the first looks beyond the time until any fires again.
+/// Four sensors on shared lines, two of them with longer windows; the first listens beyond the next firing of any.
 fn farther() -> VerifiedSchedule<4, 2, EachSensor<4>> {
     let schedule = Schedule::from_firing(Micros::from_millis(80), [ms([62, 20, 44, 4]), ms([58, 10, 26, 30])])
         .expect("it lies within");
@@ -224,7 +224,7 @@ fn farther() -> VerifiedSchedule<4, 2, EachSensor<4>> {
     schedule.verified_each(&requirements).expect("it keeps all")
 }
 
-// Between two uneven schedules nothing fires or listens sooner or longer than both allow.
+// Between two uneven schedules, no sensor fires sooner or listens longer than both allow.
 #[test]
 fn change_between_uneven_schedules_keeps_both_limits() {
     let schedules = [corners(), farther()];
@@ -233,8 +233,8 @@ fn change_between_uneven_schedules_keeps_both_limits() {
     let config = RingConfig::new().with_window(Micros::from_millis(50)).with_t_delta(Micros::new(1_900));
     let mut ring: Ring<_, _, 4> = Ring::new(&schedules[0], config, Instant::from_micros(u32::MAX - 500_000)).unwrap();
     let mut random = Random(5);
-    // The schedules of the present period and the one before, when each sensor fired and by which, and until when it
-    // listened.
+    // The schedules of the present period and the one before; when each sensor fired, by which schedule, and until when
+    // it listened.
     let (mut present, mut before) = (0, 0);
     let mut fired: [Option<(Instant, usize)>; 4] = [None; 4];
     let (mut changes, mut cut, mut accepted, mut asked) = (0, 0, 0, None);
@@ -296,12 +296,12 @@ fn change_to_less_permissive_schedule_is_refused() {
     assert_eq!(ring.change_schedule(&schedules[0]), Err(RingError::VerifiedWindow { window, verified }));
     ring.set_window(verified).unwrap();
     ring.set_blanking(Micros::from_millis(10)).unwrap();
-    // The one that looks nearest would never hear anything.
+    // The sensor with the shortest window would never hear anything.
     let (blanking, window) = (Micros::from_millis(10), Micros::from_millis(9));
     assert_eq!(ring.change_schedule(&schedules[0]), Err(RingError::Blanking { blanking, window }));
     ring.set_blanking(Micros::ZERO).unwrap();
     ring.change_schedule(&schedules[0]).unwrap();
-    // What it changes to counts from then on.
+    // The new schedule's limits hold from then on.
     let (window, verified) = (Micros::from_millis(51), Micros::from_millis(50));
     assert_eq!(ring.set_window(window), Err(RingError::VerifiedWindow { window, verified }));
     assert_eq!(*ring.schedule(), *schedules[1]);

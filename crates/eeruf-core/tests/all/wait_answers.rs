@@ -1,5 +1,4 @@
-//! Answers of the search for waits other than tables: a question without an answer has no bound, and errors in a
-//! question.
+//! Answers of the search for waits that are not tables: no bound without an answer, and errors in a question.
 
 use eeruf_core::search::{Budget, MEMORY_WORDS, WaitProblem, WaitSearch};
 use eeruf_core::{Criterion, Layout, Micros};
@@ -19,7 +18,7 @@ fn in_microseconds<'a>(period: Micros, t_lag: Option<&'a [Micros]>) -> WaitProbl
     }
 }
 
-// The best of nothing has no bound and a search that was ended has one.
+// Without any table there is no bound; a search that was stopped has one.
 #[test]
 fn best_of_nothing_has_no_bound() {
     let mut memory = vec![0; MEMORY_WORDS];

@@ -62,11 +62,11 @@ fn a_walk_goes_on_after_its_budget_was_spent() {
     }
     assert_eq!(seen, 3912);
     assert!(pauses > 0);
-    // And stays at its end.
+    // It then stays at its end.
     assert_eq!(search.next_table(before.as_ref(), &mut Budget::unlimited()), Ok(Outcome::Exhausted));
 }
 
-// After waits that are no table of the problem comes the first table that is greater.
+// After waits that are not a table of the problem comes the first greater table.
 #[test]
 fn walk_goes_on_from_what_is_no_table() {
     let wide = search(&Problem { separation: 1, interval: 1, wait_max: 8, ..THREE }).unwrap();
@@ -237,7 +237,7 @@ fn bad_input_gets_one_clear_line() {
     assert!(matches!(narrow, Err(SearchError::Schedule(_))), "{narrow:?}");
 }
 
-// A single sensor is at no distance from another: one table is its whole front.
+// A single sensor has no distance to another: one table is its whole front.
 #[test]
 fn front_of_single_sensor_is_one_table() {
     let alone = Problem {

@@ -1,5 +1,4 @@
-//! Owned random wait-time problems small enough for nested loops to answer: existence, counts, the best values and the
-//! front.
+//! Random wait-time problems small enough for nested loops to answer: existence, counts, the best values and the front.
 
 use crate::common::naive::{self, Layout, Problem};
 use crate::common::{Owned, holds, separation, ticks, waits};
@@ -82,7 +81,7 @@ proptest! {
             Outcome::Found(table) => prop_assert!(count > 0 && holds(&problem, &table)),
             outcome => prop_assert_eq!((outcome, count), (Outcome::Exhausted, 0)),
         }
-        // No memory, so little that entries give way all the time, and plenty.
+        // No memory, too little to keep entries for long, and plenty.
         for words in [0, 60, 5000] {
             let counted = search.count(None, &mut vec![7; words], &mut Budget::unlimited());
             prop_assert_eq!(counted, (Outcome::Exhausted, count), "{} words", words);

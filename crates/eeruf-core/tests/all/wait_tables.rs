@@ -1,6 +1,5 @@
 //! The shared counts and optima of small wait-time problems, and the facts about the paper's own pairs
-//! (`docs/explanation/theory.md`, section 5.2). Plain nested loops and a slow, obvious checker judge what the searches
-//! return.
+//! (`docs/explanation/theory.md`, section 5.2). Plain nested loops and a slow, obvious checker judge the results.
 
 use crate::common::naive::{self, Layout, Problem};
 use crate::common::tables::File;
@@ -94,8 +93,8 @@ fn half_the_separation_gives_room_for_more_sensors() {
     }
 }
 
-/// All ways to give the paper's pairs of waits (24 ms in phase a; 0, 2, .. 22 ms in phase b) to the sensors, by
-/// backtracking; `b` holds those of the sensors so far.
+/// Visits all assignments of the paper's pairs of waits (24 ms in phase a; 0, 2, .. 22 ms in phase b) to sensors by
+/// backtracking; `b` holds the waits of the sensors so far.
 fn rearrange(problem: &Problem<'_>, b: &mut Vec<u32>, see: &mut dyn FnMut(&[u32])) {
     if b.len() == problem.lag.len() {
         return see(b);

@@ -1,4 +1,4 @@
-//! Functions for firmware while a ring runs: the state before each sensor, blind sensors, pauses.
+//! Functions for firmware while a ring runs: the state in front of each sensor, blind sensors, pauses.
 
 use eeruf_core::tables::PAPER_12;
 use eeruf_core::{
@@ -68,7 +68,7 @@ fn state_is_as_old_as_its_confirmation_through_a_wrap() {
     assert_eq!(size_of::<SensorWatch<12>>(), 12 * 16 + 8, "as its documentation says");
 }
 
-// Each reading says what is known of the space before its sensor.
+// Each reading updates what is known of the space in front of its sensor.
 #[test]
 fn each_reading_updates_the_state_before_its_sensor() {
     use ReadingKind::*;
@@ -80,7 +80,7 @@ fn each_reading_updates_the_state_before_its_sensor() {
         (First, unknown(Micros::ZERO, Doubt::Unsure)),
         (Rejected, unknown(ms(100), Doubt::Rejected)),
         (Accepted, obstacle(Micros::ZERO)),
-        // One reading that confirms nothing leaves it, two do not.
+        // One unconfirming reading leaves the obstacle, two end it.
         (Rejected, obstacle(ms(100))),
         (Accepted, obstacle(Micros::ZERO)),
         (NoEcho, obstacle(ms(100))),
@@ -98,7 +98,7 @@ fn each_reading_updates_the_state_before_its_sensor() {
         (Clear, SensorState::Clear { age: Micros::ZERO }),
         (Unanswered, SensorState::Unanswered { since: Micros::ZERO }),
     ];
-    // The first is not the last firing's: what is unknown is so since the beginning.
+    // The first reading is not the last firing's: nothing has been known since the beginning.
     for (step, (kind, expected)) in (0..).zip(steps) {
         let now = at(100_000 * step);
         let reading = Reading {
@@ -116,11 +116,11 @@ fn each_reading_updates_the_state_before_its_sensor() {
     }
 }
 
-// A sensor is blind when nothing is accepted for this many firings with an echo and is named once.
+// A sensor is blind if nothing is accepted for this many firings with an echo, and is named once.
 #[test]
 fn blind_sensor_is_named_once() {
     let (mut ring, mut watch) = (ring(0), SensorWatch::<12>::new(20, at(0)));
-    // Sensor 4 hears something else each time, sensor 5 now and then nothing, all others a wall.
+    // Sensor 4 hears a different echo each time, sensor 5 sometimes nothing, all others a wall.
     let echo = |sensor, period| match sensor {
         3 => Some(5_000 + 2_000 * (period % 10)),
         4 if period % 10 == 0 => None,
@@ -139,7 +139,7 @@ fn blind_sensor_is_named_once() {
     assert_eq!(blind.len(), 2);
 }
 
-// A ring that is paused fires nothing ends its readings and goes on after it.
+// A paused ring fires nothing, ends its readings and goes on after the pause.
 #[test]
 fn paused_ring_ends_readings_and_goes_on() {
     let mut ring = ring(0);
@@ -209,7 +209,7 @@ fn a_larger_t_delta_takes_hold_at_once() {
         }
     }
     assert!(now != at(0), "it goes on");
-    // Those of the firings under way, and the first with echoes that begin elsewhere.
+    // Readings of the firings under way, and the first after the pause.
     assert!(kinds[26..].iter().all(|kind| *kind == ReadingKind::Accepted), "{kinds:?}");
 }
 
@@ -256,8 +256,7 @@ fn confirmed_silence_ends_a_count_of_rejected_echoes() {
     assert_eq!(blind, [254]);
 }
 
-// Silence of a ring that nobody drives is free space only if that was said by name, or if something shows that the
-// sensor listened.
+// Without a driver, silence is free space only if the settings say so or something shows that the sensor listened.
 #[test]
 fn silence_without_a_witness_is_never_free_space() {
     for (silence, witness) in [
@@ -298,7 +297,7 @@ fn silence_without_a_witness_is_never_free_space() {
     }
 }
 
-// After 72 minutes the clock of 32 bits shows 25 seconds: what was known before a restart would pass for young.
+// After 72 minutes the 32-bit clock shows 25 seconds: a state from before the restart would look recent.
 #[test]
 fn nothing_is_known_after_a_restart() {
     let (mut ring, mut watch) = (ring(0), SensorWatch::<12>::new(0, at(0)));
@@ -312,7 +311,7 @@ fn nothing_is_known_after_a_restart() {
     }
 }
 
-// The ring restarts by itself then, and its next event is the first that the watch gets.
+// After such a jump the ring restarts by itself, and its next event is the first that the watch gets.
 #[test]
 fn nothing_is_known_after_the_clock_has_jumped_back() {
     for (back_us, is_forgotten) in [(900_000, false), (1_100_000, true), (25_000_000, true), (2_000_000_000, true)] {

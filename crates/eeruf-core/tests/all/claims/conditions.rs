@@ -1,11 +1,11 @@
-//! Eqs. (13a), (13b): the fast check of `eeruf-core`, which sorts, against their longhand definition, which compares
-//! all pairs; and the facts that the paper claims for Table I.
+//! Eqs. (13a), (13b): compares the fast check of `eeruf-core`, which sorts, with the longhand definition, which
+//! compares all pairs; and tests the paper's claims about Table I.
 
 use eeruf_core::tables::{TABLE_I_A, TABLE_I_B, TABLE_I_C, TABLE_I_D, THE_ONE_WITH_19_MS};
 use eeruf_core::{Criterion, Layout, Micros, Phase, Requirements, Schedule, conditions::ViolationKind};
 use proptest::prelude::*;
 
-/// The smaller left side of (13a), (13b) over all pairs, as they are printed (with the outer absolute value).
+/// The smallest left side of (13a) and (13b) over all pairs, as printed (with the outer absolute value).
 fn longhand_paper(a: &[i64], b: &[i64]) -> Option<i64> {
     pairs(a.len())
         .flat_map(|(x, y)| {
@@ -17,7 +17,7 @@ fn longhand_paper(a: &[i64], b: &[i64]) -> Option<i64> {
         .min()
 }
 
-/// The smallest change that crosstalk shows between consecutive readings: from (10a), (10b).
+/// The smallest change of crosstalk between consecutive readings, from (10a), (10b).
 fn longhand_exact(a: &[i64], b: &[i64]) -> Option<i64> {
     pairs(a.len())
         .flat_map(|(x, y)| {
@@ -118,7 +118,7 @@ fn printed_13a_without_outer_value_fails_on_table_i() {
     }
 }
 
-// Tables i b and i d meet 13a and 13b just below one millisecond.
+// Tables I-b and I-d meet (13a) and (13b) just below one millisecond.
 #[test]
 fn tables_i_b_and_i_d_hold_below_one_millisecond() {
     for table in [TABLE_I_B, TABLE_I_D, THE_ONE_WITH_19_MS] {
@@ -140,7 +140,7 @@ fn table_i_a_alternates_nothing_and_rejects_nothing() {
     assert_eq!(TABLE_I_A.verify(&report_at).violations().count(), 132);
 }
 
-// Table i c is table i b in firing times with sensors 4 and 1 one millisecond apart.
+// Table I-c is Table I-b in firing times, with sensors 4 and 1 one millisecond apart.
 #[test]
 fn table_i_c_is_table_i_b_in_firing_times() {
     for (phase, sensor) in [Phase::A, Phase::B].into_iter().flat_map(|p| (0..12).map(move |x| (p, x))) {
@@ -151,7 +151,7 @@ fn table_i_c_is_table_i_b_in_firing_times() {
     assert_eq!(closest.phases, (Phase::A, Phase::B));
 }
 
-// Table i d has 19 ms within its blocks but 17 ms over any four adjacent sensors.
+// Table I-d keeps 19 ms within its blocks but 17 ms within any four adjacent sensors.
 #[test]
 fn table_i_d_has_19_ms_in_blocks_and_17_ms_adjacent() {
     assert_eq!(TABLE_I_D.min_interval(Layout::Blocks(4)).unwrap().value, Micros::from_millis(19));

@@ -1,5 +1,5 @@
-//! The promise of the method: where the conditions hold, no crosstalk passes twice in a row, whatever its path; and a
-//! true echo always passes.
+//! The promise of the method: if the conditions hold, no crosstalk passes twice in a row, whatever its path, and a true
+//! echo always passes.
 
 use std::collections::VecDeque;
 
@@ -35,15 +35,15 @@ prop_compose! {
         let schedule =
             Schedule::from_slices(Micros::new(period), &vec![Micros::ZERO; sensors], [&a, &b]).unwrap();
         let asked = Requirements { stale_echo: true, ..Requirements::new(Micros::ZERO) };
-        // Shorter than the window too, as a ring asks for.
+        // Shorter than the window too, as a ring requires.
         let shorter = Micros::new(schedule.min_refire().as_micros().saturating_sub(1));
         let t_delta = schedule.verify(&asked).max_t_delta().unwrap().min(shorter);
         (schedule, t_delta)
     }
 }
 
-/// Readings of `receiver` if it hears nothing but `emitter`, over one path, for some periods. The caller is sometimes
-/// late, by `stalls`.
+/// Readings of a `receiver` that hears only `emitter`, over one path, for some periods. The caller is sometimes late,
+/// by `stalls`.
 fn readings_of_crosstalk(
     schedule: &Schedule<64>,
     config: RingConfig,
@@ -96,8 +96,7 @@ proptest! {
         let (emitter, receiver) = (pair.0.index(schedule.sensors()) as u8, pair.1.index(schedule.sensors()) as u8);
         let period = schedule.period().as_micros();
         let path = if emitter == receiver {
-            // A sensor hears its own stale echo. Two periods old it would be as in every second period: two phases
-            // cannot tell it from a true one.
+            // A sensor hears its own stale echo. If it is two periods old, two phases cannot tell it from a true one.
             let least = schedule.min_refire().as_micros() + 1;
             Micros::new(least + (f64::from(2 * period - 1 - least) * periods / 6.0) as u32)
         } else {
@@ -130,7 +129,7 @@ proptest! {
         prop_assert!(!kinds.contains(&ReadingKind::Accepted), "{kinds:?}");
     }
 
-    // A true echo that moves less than t delta per reading is always accepted.
+    // A true echo that moves less than `t_delta` per reading is always accepted.
     #[test]
     fn slow_true_echo_is_always_accepted(
         (schedule, t_delta) in verified_schedule(),
@@ -174,7 +173,7 @@ proptest! {
 
 #[test]
 fn constant_waits_repeat_crosstalk_so_that_it_is_ambiguous() {
-    // The negative control: nothing alternates, so that only what was fired tells crosstalk from a wall.
+    // The negative control: nothing alternates, so only the firings tell crosstalk from a wall.
     let schedule = Schedule::<64>::from_slices(
         Micros::from_millis(60),
         &[Micros::ZERO, Micros::from_millis(15)],

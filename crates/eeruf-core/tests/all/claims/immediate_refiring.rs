@@ -37,7 +37,7 @@ fn readings_of_y(t_echo: u32, path: u32, lag_y: u32, x: Waits, y: Waits) -> Vec<
     let mut readings = vec![];
     for _ in 0..400 {
         let mut now = ring.next_deadline();
-        // Sound that arrives before the ring wants to be polled again interrupts its sleep.
+        // Sound that arrives before the next deadline interrupts the sleep.
         if let Some(&at) = heard.front().filter(|at: &&Instant| now.has_reached(**at)) {
             heard.pop_front();
             now = at;
@@ -75,7 +75,7 @@ proptest! {
         }
     }
 
-    // With alternating waits the error alternates between 10a and 10b and is rejected.
+    // With alternating waits the error alternates between (10a) and (10b) and is rejected.
     #[test]
     fn alternating_waits_reject_the_other_echo(
         t_echo in 15_000..30_000_u32,
@@ -100,7 +100,7 @@ proptest! {
     }
 }
 
-// Equal waits settle on the other sensors echo and different ones never settle.
+// Equal waits settle on the other sensor's echo; different waits never settle.
 #[test]
 fn only_equal_waits_settle() {
     // Equal waits: y reads x's 12 ms.

@@ -15,7 +15,7 @@ const LAYOUT: Layout = Layout::Line(4);
 
 #[derive(Clone, Debug)]
 enum Call {
-    /// Polls until nothing is due, this much later than the deadline, or at once if that is past.
+    /// Polls until nothing is due, this much after the deadline, or at once if that has passed.
     PollLate(u32),
     /// Polls once, this long after the last call, on a clock that does not wrap.
     Poll(u64),
@@ -52,7 +52,7 @@ fn any_call() -> impl Strategy<Value = Call> {
     ]
 }
 
-/// Watches what a ring fires, on a clock that does not wrap.
+/// Watches the firings of a ring, on a clock that does not wrap.
 struct Watch {
     fired: [Option<u64>; 12],
     count: [u32; 12],
@@ -93,7 +93,7 @@ proptest! {
         calls in prop::collection::vec(any_call(), 0..60),
     ) {
         let ladder = [TABLE_I_D.scaled(3, 5).unwrap(), THE_ONE_WITH_19_MS.scaled(4, 5).unwrap(), TABLE_I_D];
-        // What every rung keeps; the first is the tightest.
+        // The limits that every rung keeps; the first is the tightest.
         let min_interval = ladder.iter().map(|s| s.min_interval(LAYOUT).unwrap().value).min().unwrap();
         let min_refire = ladder.iter().map(Schedule::min_refire).min().unwrap();
         let mut now = u64::from(start);
@@ -133,7 +133,7 @@ proptest! {
                 Call::ChangeSchedule(rung) => ring.change_to_unverified(rung.get(&ladder)).unwrap(),
             }
         }
-        // Two periods of the slowest rung, the silence before a change of schedule, and what may be left of a period.
+        // Two periods of the slowest rung, the silence before a change of schedule, and the rest of a period.
         let before = watch.count;
         let end = now + 5 * 100_000;
         while now < end {
@@ -172,7 +172,7 @@ proptest! {
     }
 }
 
-/// Checks that a call about a sensor is refused exactly if the sensor does not exist.
+/// Checks that a call about a sensor is refused if and only if the sensor does not exist.
 fn known(sensor: u8, result: Result<(), SensorError>) {
     assert_eq!(result, if sensor < 12 { Ok(()) } else { Err(SensorError { sensor, sensors: 12 }) });
 }

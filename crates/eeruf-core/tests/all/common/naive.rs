@@ -34,7 +34,7 @@ pub fn conflicts(layout: Layout, sensors: usize, neighbours: usize) -> Vec<u64> 
     })
 }
 
-/// The rows of conflicts of any graph: `close` is asked for each pair `x > y`.
+/// The rows of conflicts of any graph; `close` decides each pair `x > y`.
 pub fn conflicts_where(sensors: usize, close: impl Fn(usize, usize) -> bool) -> Vec<u64> {
     let conflict = |x: usize, y: usize| x != y && close(x.max(y), x.min(y));
     (0..sensors).map(|x| (0..sensors).filter(|&y| conflict(x, y)).map(|y| 1 << y).sum()).collect()
@@ -111,7 +111,7 @@ pub fn count(problem: &Problem<'_>) -> u128 {
     count
 }
 
-/// The greatest smallest interval and the greatest separation of any table, by trying each value.
+/// The greatest value, interval or separation, for which a table exists, by trying each.
 pub fn best(problem: &Problem<'_>, with: impl Fn(Problem<'_>, u32) -> Problem<'_>, most: u32) -> Option<u32> {
     (0..=most).rev().find(|&value| count(&with(*problem, value)) > 0)
 }

@@ -1,10 +1,10 @@
 //! Flow rings of the corpus.
 //!
-//! Lines beside those of other rings: `W` sensors, window, blanking, then the settings in the order of [`begin`], votes
-//! by number, and the start; `D` the robot's speed (mm/s) and turn (mrad/s) at an instant; `G` silence needs a witness
-//! from now on, `Y` a sensor that answered (1) or did not (0), `H` an echo time measured of its last firing, `M` one
-//! between two; `Z` a pause or its end; `B` a sensor whose echoes are forgotten; `Q` the quiet of a sensor, and the
-//! echo time that is believed of it; `U` sensor and instant of the next firing, if one comes in this round.
+//! Further lines: `W` sensors, window, blanking, then the settings in the order of [`begin`], votes by number, and the
+//! start; `D` the robot's speed (mm/s) and turn (mrad/s) at an instant; `G` silence needs a witness from now on, `Y` a
+//! sensor that answered (1) or did not (0), `H` a measured echo time of its last firing, `M` one between two limits;
+//! `Z` a pause or its end; `B` a sensor whose echoes are forgotten; `Q` the quiet of a sensor, and its believed echo
+//! time; `U` sensor and instant of the next firing, if one comes in this round.
 
 use eeruf_core::{
     Instant, Micros, Reading, RingConfig, RingEvent,
@@ -20,7 +20,7 @@ const STEPS: u32 = 300;
 /// All kinds of votes, in the order of their numbers.
 const VOTES: [Votes; 3] = [Votes::ByMotion, Votes::EveryEcho, Votes::TwoInARow];
 
-/// Random settings, mostly those of every robot.
+/// Random settings, mostly the defaults.
 fn settings(r: &mut Random) -> (TurnSettings, BeliefSettings) {
     let (mut turns, mut belief) = (TurnSettings::new(r.within(1, u32::MAX)), BeliefSettings::DEFAULT);
     if r.once_in(2) {
@@ -80,7 +80,7 @@ fn run<const K: usize>(r: &mut Random, text: &mut Text, looks: u32) {
         now: start,
         late: r.one_of(&[0, 0, 30, 300, 1_000, 5_000]),
         calm: r.one_of(&[1, 10, 100]),
-        // Some have nothing in range: what they hear comes after the window.
+        // Some have nothing in range: their echoes come after the window.
         own: (0..K).map(|_| r.within(1, window + window / 4)).collect(),
         path: r.within(100, window),
         path_only: r.once_in(4),

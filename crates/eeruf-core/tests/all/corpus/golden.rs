@@ -1,5 +1,5 @@
-//! The part of the corpus that the tree keeps: for each ring its number of lines and their digest, and its first lines
-//! as far as they show something new.
+//! The part of the corpus that the repository keeps: for each ring the number and the digest of its lines, and as many
+//! of its first lines as show something new.
 //!
 //! `# table 67 190 1f2e...` is the title of ring `table 67`; the lines after it are as in the corpus, so that each port
 //! can play them.
@@ -23,8 +23,8 @@ fn title(name: &str, lines: &str) -> String {
     format!("{name} {} {:016x}", lines.lines().count(), digest(lines))
 }
 
-/// The properties for which a line may be kept: its letter and event in each family of rings, and the kind, state,
-/// reason and explanation in any.
+/// The properties for which a line may be kept: its letter and event within its family of rings, and its kind, state,
+/// reason and explanation in any family.
 fn shown(name: &str, line: &str) -> Vec<String> {
     let family = name.split(' ').next().unwrap_or(name);
     let words = line.split(' ').collect::<Vec<_>>();
@@ -41,13 +41,13 @@ fn shown(name: &str, line: &str) -> Vec<String> {
     }
 }
 
-/// Picks the lines to keep from each ring of the corpus, those first that show most for each line.
+/// Picks the lines to keep from each ring of the corpus, starting where a line shows most.
 pub(super) fn of(corpus: &str) -> String {
     let rings = rings(corpus).map(|(name, lines)| (name, lines.lines().collect::<Vec<_>>())).collect::<Vec<_>>();
     let mut kept = vec![0; rings.len()];
     let mut seen = BTreeSet::new();
     loop {
-        // What is new, its number of lines, the ring, and its lines to keep.
+        // The new properties, the number of lines for them, the ring, and its lines to keep.
         let mut best = (BTreeSet::new(), 1, 0, 0);
         for (ring, (name, lines)) in rings.iter().enumerate() {
             let mut new = BTreeSet::new();
@@ -72,7 +72,7 @@ pub(super) fn of(corpus: &str) -> String {
     text
 }
 
-/// The differences of the corpus from its kept part, one for each ring.
+/// The differences between the corpus and its kept part, one for each ring.
 pub(super) fn differences(golden: &str, corpus: &str) -> String {
     let mut text = String::new();
     let mut now = rings(corpus);

@@ -1,4 +1,4 @@
-//! Rings that fire in turn, in a world of true time: own walls in loops that are late, and foreign sound in
+//! Rings that fire in turn, in a world of true time: walls of their own in late loops, and foreign sound in
 //! [`one_path`].
 
 mod one_path;
@@ -49,7 +49,7 @@ fn own_walls_are_believed_in_loops_that_are_late() {
                         }
                         first.extend(seen);
                     }
-                    // Nothing is later than the loop, whatever readings have brought forward.
+                    // Nothing is later than the loop, whatever firings the readings have brought forward.
                     assert!(late > 0 || world.latest < tick, "{} us late, tick {tick}", world.latest);
                 }
                 let share = |seen: &Seen| 100.0 * f64::from(seen.accepted) / f64::from(seen.fired);
@@ -105,14 +105,14 @@ fn votes_follow_from_motion_and_company() {
     ];
     for (belief, told) in every {
         let (_, accepted) = of_chance(belief, told);
-        // All but those under way.
+        // All but the firings under way.
         assert!(accepted > 0.99, "{belief:?} {told:?}: {accepted}");
     }
     for (belief, told) in two {
         let (_, accepted) = of_chance(belief, told);
         assert!(accepted < 0.2, "{belief:?} {told:?}: {accepted}");
     }
-    // Twice the least quiet: own walls near by, so that all have no more.
+    // Twice the least quiet: near walls, so that no sensor needs more.
     let rate = |votes| {
         let mut world = World::believing(8, 5, 0, 1, BeliefSettings { votes, ..DEFAULT });
         let mut seen = vec![Seen::default(); 8];
@@ -214,7 +214,7 @@ fn sensors_that_fire_together_have_one_turn() {
     assert!(of(&world, 2) == of(&world, 3) && of(&world, 3) == of(&world, 7) && of(&world, 0) == of(&world, 4));
     // Partners explain nothing.
     assert!(seen.iter().all(|seen| seen.accepted + 4 > seen.fired && seen.fired > 150), "{}", seen[2].accepted);
-    // All get as much as any of them needs.
+    // The whole group gets as much quiet as any of them needs.
     let masked = |now, sensor, dice: &mut Dice| match sensor {
         7 => vec![(now + 1_000 + u64::from(dice.below(4_000)), 7)],
         _ => own(now, sensor, dice),
@@ -228,7 +228,7 @@ fn sensors_that_fire_together_have_one_turn() {
         let [before, after] = pair else { unreachable!() };
         assert!(![2, 3, 7].contains(&after.1) || after.0 == before.0 || after.0 - before.0 > 20_000, "{pair:?}");
     }
-    // Another takes the turn of one that is disabled; it takes it back.
+    // When a sensor is disabled another takes its turn; when it is enabled it takes the turn back.
     world.ring.disable(2).unwrap();
     let (with, alone) = (of(&world, 3).len(), of(&world, 2).len());
     world.run(24_000_000, &mut seen, own);
@@ -257,7 +257,7 @@ fn sensors_that_fire_together_have_one_turn() {
 fn sensors_on_one_line_never_listen_at_once() {
     let ms = Micros::from_millis;
     let (windows, refire) = ([20, 25, 12, 12, 25, 20].map(ms), [0, 0, 0, 70, 0, 0].map(ms));
-    // Lines with a sensor in common are one.
+    // Sets with a common sensor form one line.
     let lines = [0b11_0000, 0b01_0010, 0b1100, 0b10_0001];
     let mut world =
         uneven(6, 1, 500, Uneven { window: &windows, refire: &refire, shared_lines: &lines, ..Uneven::NONE });
@@ -283,7 +283,7 @@ fn each_sensor_has_its_own_window_and_t_delta() {
     let of = |t_delta, window| SensorLimits { t_delta: Micros::new(t_delta), window: Micros::new(window) };
     let accepted = |limits: [SensorLimits; 3]| {
         let limits = EachSensor::for_flow(limits, &[]);
-        // No belief may help.
+        // Beliefs must not help.
         let belief = BeliefSettings { near: Micros::ZERO, ..DEFAULT };
         let begin = Instant::from_micros(BEGIN);
         let ring = FlowRing::with_limits(3, limits, TurnSettings::new(1), belief, CONFIG, begin).unwrap();
@@ -325,7 +325,7 @@ fn one_by_one_and_groups_are_turns_with_the_most_quiet() {
     for (together, rate) in [(&[][..], 28), (&[0b1_0001, 0b10_0010, 0b100_0100, 0b1000_1000], 57)] {
         let mut world = world_of(8, turns, 1000, Uneven { together, ..Uneven::NONE });
         let mut seen = vec![Seen::default(); 8];
-        // Far walls are heard in the turn of another, if there is less quiet.
+        // With less quiet, far walls are heard in another sensor's turn.
         let far = |now, sensor, dice: &mut Dice| vec![(now + u64::from(24_000 + dice.below(60)), sensor)];
         world.run(20_000_000, &mut seen, far);
         let group = |sensor: u8| if together.is_empty() { sensor } else { sensor % 4 };
@@ -430,7 +430,7 @@ fn no_call_makes_a_loop_late_that_polls_in_time() {
     }
 }
 
-/// Kinds of a sensor's readings at these firings, after its wall stood for 30 firings and then disappeared.
+/// Kinds of a sensor's readings at these firings, after its wall has stood for 30 firings and disappeared.
 fn after_a_wall(alone: bool, speed_mm_s: u32, echoes: [bool; 3]) -> Vec<ReadingKind> {
     let belief = BeliefSettings { alone, ..BeliefSettings::DEFAULT };
     let config = RingConfig::new().with_window(Micros::from_millis(25)).with_blanking(Micros::new(300));
@@ -464,6 +464,6 @@ fn silence_is_believed_at_once_of_a_robot_that_moves_and_of_a_belief_in_silence(
         // Standing, silence outlasts what four readings have confirmed.
         assert_eq!(after_a_wall(alone, 0, [false; 3]), [NoEcho; 3], "alone: {alone}");
     }
-    // An echo that is not believed does not end the row of silence.
+    // An echo that is not believed does not end a run of silence.
     assert_eq!(after_a_wall(false, 500, [false, true, false])[2], Clear);
 }

@@ -1,4 +1,4 @@
-//! One path of foreign sound, whatever is done to the ring. The long run, of some ten million readings:
+//! One path of foreign sound, under any operations on the ring. The long run, of some ten million readings:
 //! `RINGS=50000 cargo test -p eeruf-core --test all -- one_path_of`.
 
 use eeruf_core::{
@@ -9,7 +9,7 @@ use eeruf_core::{
 use super::world::{Dice, Operates, Seen, World};
 use super::{BEGIN, CONFIG, DEFAULT};
 
-/// The value at which doubt is held, if it is.
+/// The value to which doubt is held, if any.
 #[derive(Clone, Copy, Debug)]
 enum Doubt {
     Free,
@@ -17,8 +17,8 @@ enum Doubt {
     AtMost,
 }
 
-/// Receivers without a wall of their own hear one path each, from one sensor, whatever is done to the ring, with up to
-/// `E` echoes of a firing. Returns the number of readings compared, and of those believed.
+/// Runs a ring under random operations in which receivers without a wall hear one path each, from one sensor, with up
+/// to `E` echoes a firing. Returns the numbers of readings compared and believed.
 fn one_path<const E: usize>(seed: u32, speed_mm_s: u16, changes: bool, doubt: Doubt) -> (u32, u32) {
     let mut dice = Dice { state: u64::from(seed) << 20 | 77, travel: 0 };
     let sensors = 2 + dice.below(11) as usize;
@@ -92,7 +92,7 @@ impl Path {
         if dice.below(20) == 0 || self.length <= self.shortest || self.length >= LONGEST {
             self.direction = -self.direction;
         }
-        // As much, and as long, as may be: the rest of P.
+        // The jitter takes up the rest of P.
         let most = 147;
         let jitter = if dice.below(2) == 0 { dice.below(most + 1) } else { most * dice.below(2) };
         self.length as u64 / 1000 + u64::from(jitter)
@@ -120,7 +120,7 @@ fn one_path_of_foreign_sound_is_never_believed() {
         }
     }
     println!("{all} readings compared, {wrong} believed");
-    // With the most quiet nothing foreign is heard by who has fired.
+    // With the most quiet, a sensor that has fired hears nothing foreign.
     assert!(all > 100 * rings, "{all}");
     assert_eq!(wrong, 0, "of {all}");
 }

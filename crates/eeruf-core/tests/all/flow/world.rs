@@ -1,4 +1,4 @@
-//! A world of true time around a flow ring, and an operator that calls all of its operations.
+//! A simulated world in true time around a flow ring, and an operator that calls all operations of the ring.
 
 use eeruf_core::{
     Instant, Micros, ReadingKind, Ring, RingEvent, Silence,
@@ -8,7 +8,7 @@ use eeruf_core::{
 
 use super::{BEGIN, CONFIG, DEFAULT};
 
-/// A random generator, and the change in ns that a path may have shown since the beginning.
+/// A random generator, with the total change in ns that a path may have shown so far.
 pub(super) struct Dice {
     pub(super) state: u64,
     pub(super) travel: u64,
@@ -21,12 +21,12 @@ impl Dice {
     }
 }
 
-/// A ring of HC-SR04 modules in true time, which does not wrap.
+/// A ring of HC-SR04 modules in true time, a clock that does not wrap.
 pub(super) struct World<P = InTurn<24>, const E: usize = 1> {
     pub(super) ring: Ring<P, Belief<24, E>, 24, E, 3>,
     begin: u32,
     pub(super) now: u64,
-    /// Edges to come: when the fallen line will be seen, the sensor, and the earliest time of the edge.
+    /// Edges to come: the time when the fallen line is seen, the sensor, and the earliest time of the edge.
     edges: Vec<(u64, u8, u64)>,
     /// Greatest width of the intervals within which edges are known to lie.
     pub(super) uncertain: u32,
@@ -106,7 +106,7 @@ impl<P: Plan, const E: usize> World<P, E> {
     /// Moves the path by at most the change allowed up to an instant.
     fn travel(&mut self, until: u64) {
         if let Some(of) = &mut self.operates {
-            // By twice the speed over that of the slowest sound.
+            // By twice the speed over that of the slowest sound, 331 m/s.
             self.dice.travel += u64::from(of.speed_mm_s) * 2 * until.saturating_sub(of.told) * 1000 / 331_000;
             of.told = of.told.max(until);
         }
@@ -146,7 +146,7 @@ impl<P: Plan, const E: usize> World<P, E> {
             13 => self.ring.set_report_after(Micros::new(self.dice.below(60_000))).unwrap(),
             14 => self.ring.set_window(Micros::new(20_000 + self.dice.below(5_001))).unwrap(),
             15 => self.ring.set_blanking(Micros::new(self.dice.below(2_000))).unwrap(),
-            // No less than the path may do.
+            // No less than the limits of the path.
             16 => self.ring.set_audible(Micros::new(33_500 + self.dice.below(20_000))).unwrap(),
             17 => self.ring.set_path_change(Micros::new(150 + self.dice.below(300))).unwrap(),
             18 => assert!(self.ring.upcoming().count() <= self.ring.sensors()),
@@ -194,7 +194,7 @@ impl<P: Plan, const E: usize> World<P, E> {
         }
     }
 
-    /// The instant at which a sensor that is asked to fires: a little sooner or later, as the ring is told.
+    /// Fires a sensor a little sooner or later than asked, tells the ring, and returns the instant.
     fn fire(&mut self, sensor: u8) -> u64 {
         if self.operates.is_none() {
             return self.now;
@@ -233,7 +233,7 @@ impl<P: Plan, const E: usize> World<P, E> {
             if let Some(at) = edge {
                 let (_, sensor, earliest) = self.edges.remove(0);
                 self.hear(sensor, earliest, at);
-                // The loop comes round late for the reading, too, or at once.
+                // The loop is late for the reading, too, or polls at once.
                 if self.late > 0 || self.now < asleep_until {
                     continue;
                 }
@@ -253,7 +253,7 @@ impl<P: Plan, const E: usize> World<P, E> {
                         self.fired.push((at, sensor));
                         for (edge, sensor) in sound(at, sensor, &mut self.dice) {
                             let width = self.dice.below(self.uncertain + 1);
-                            // At any time in it, and at its ends.
+                            // The edge lies anywhere in the interval, also at its ends.
                             let before = [0, width, self.dice.below(width + 1)][self.dice.below(3) as usize];
                             let earliest = edge - u64::from(before);
                             self.edges.push((earliest + u64::from(width), sensor, earliest));

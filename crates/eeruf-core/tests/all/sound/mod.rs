@@ -1,6 +1,6 @@
-//! The promise of a ring, whatever was fired when: one path of sound that is audible for no longer than R and changes
-//! by no more than P is never accepted, and a reading that nothing foreign explains always is. [`world`] performs every
-//! operation on a ring; [`model`] applies the rule and forgets nothing.
+//! The promise of a ring, whatever fires when: one path of sound, audible for no longer than R and changing by no more
+//! than P, is never accepted, and a reading that nothing foreign explains always is. [`world`] performs every operation
+//! on a ring; [`model`] applies the rule and forgets nothing.
 //!
 //! The long run: `EERUF_SOUND=10000000 cargo test --release -p eeruf-core --test all -- sound`.
 
@@ -25,7 +25,7 @@ struct Table {
     t_delta: u32,
 }
 
-/// A table with room for more sensors.
+/// A copy of a table with capacity for more sensors.
 fn roomy<const K: usize>(table: &Schedule<K>) -> Schedule<ROOM> {
     let of = |phase| -> Vec<Micros> { (0..table.sensors()).map(|x| table.t_fire(phase, x).unwrap()).collect() };
     let lags = vec![Micros::ZERO; table.sensors()];
@@ -79,7 +79,7 @@ fn tables(count: usize, random: &mut Random) -> Vec<Table> {
     tables
 }
 
-/// Runs a table once: each sensor hears one path, and every operation is performed on the ring.
+/// Runs a table once: each sensor hears one path, while every operation is performed on the ring.
 fn run_paths(table: &Table, others: &[VerifiedSchedule<ROOM>], random: &mut Random, compared: u64) -> Vec<Count> {
     let start = (1_u64 << 32) - u64::from(random.up_to(3_000_000));
     let most = table.verified.map_or(table.schedule.min_refire(), |verified| verified.window());
@@ -116,7 +116,7 @@ fn run_paths(table: &Table, others: &[VerifiedSchedule<ROOM>], random: &mut Rand
         operations: [0, 20, 200][random.up_to(2) as usize],
         fired: [0, 1, 5][random.up_to(2) as usize],
         clock_steps: [0, 50][random.up_to(1) as usize],
-        // To 3 m/s towards a wall or from it; exact, noisy, and wrong.
+        // Up to 3 m/s towards a wall or away from it; exact, noisy, and wrong.
         expected: [0, i64::from(random.up_to(36_000)) - 18_000][random.up_to(1) as usize],
         noise: [0, 0, 100, 1500][random.up_to(3) as usize],
         uncertain,
@@ -153,7 +153,7 @@ fn no_single_path_is_accepted_whatever_happens() {
     assert!(ambiguous > compared / 100, "{ambiguous} ambiguous of {compared}");
 }
 
-// On time crosstalk of a verified table moves by more than T_delta, and as it is seen by less.
+// On time, crosstalk of a verified table moves by more than T_delta, but seen between looks it may move less.
 #[test]
 fn edges_between_two_looks_let_no_path_in_on_time() {
     let (mut random, mut agree) = (Random(7), 0);
@@ -228,7 +228,7 @@ struct Loop {
     lasts: u32,
 }
 
-/// For each sensor, the share of accepted readings in a main loop, if each sensor sees its own wall.
+/// For each sensor, the share of accepted readings in a main loop, if each sees its own wall.
 fn in_a_loop(schedule: &Schedule<ROOM>, t_delta: u32, path_change: u32, course: &Loop, seed: u64) -> Vec<f64> {
     let (sensors, window) = (schedule.sensors(), 20_000);
     let config = RingConfig::new()

@@ -1,5 +1,5 @@
-//! The rule of docs/explanation/theory.md section 2.1, applied to all firings in true time and written from the
-//! document.
+//! The rule of docs/explanation/theory.md section 2.1, implemented from that text and applied to all firings in true
+//! time.
 
 use eeruf_core::Reading;
 
@@ -50,7 +50,7 @@ impl Model {
     }
 
     /// Records the reading of the sensor's last firing, and the change that odometry expects. Returns `None` if it has
-    /// no echo, nothing before it, or does not agree.
+    /// no echo, no reading before it, or does not agree.
     pub(super) fn read(&mut self, reading: &Reading, sound: Sound, change: i32) -> Option<Compared> {
         let y = usize::from(reading.sensor);
         let f2 = *self.sensors[y].fired.last()?;

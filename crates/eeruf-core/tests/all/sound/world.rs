@@ -1,4 +1,4 @@
-//! A world in true time around a ring: sound that travels along one path to each sensor, or a wall before each, a clock
+//! A simulated world in true time around a ring: one path of sound to each sensor or a wall in front of it, a clock
 //! that wraps and steps back, late polls, and every operation on a ring.
 
 use std::cmp::Reverse;
@@ -21,11 +21,11 @@ pub(super) const STEPS: u32 = 12;
 pub(super) enum Heard {
     /// Sound of one emitter along one path of at least this many microseconds.
     Path { emitter: u8, least: u32 },
-    /// The own wall after this many microseconds, give or take 15.
+    /// The sensor's own wall after this many microseconds, give or take 15.
     Wall { t_echo: u32 },
 }
 
-/// Conditions of a run.
+/// The conditions of a run.
 #[derive(Clone, Copy)]
 pub(super) struct Course {
     /// Greatest lateness of polls in microseconds; every 64th is up to eight times as late.
@@ -34,11 +34,11 @@ pub(super) struct Course {
     pub(super) handling: u32,
     /// One of this many events is followed by a random operation on the ring; 0 for never.
     pub(super) operations: u32,
-    /// One of this many firings comes at another instant than its poll; 0 for never.
+    /// One of this many firings happens at another instant than its poll; 0 for never.
     pub(super) fired: u32,
     /// One of this many events is followed by a step back of the clock; 0 for never.
     pub(super) clock_steps: u32,
-    /// The change of echoes that odometry expects, in microseconds a second, and the largest error of that.
+    /// The change of echoes that odometry expects, in microseconds a second, and its largest error.
     pub(super) expected: i64,
     pub(super) noise: u32,
     /// Greatest width, in microseconds, of the intervals within which edges are known to lie; one of 64 is up to 4 ms.
@@ -46,7 +46,7 @@ pub(super) struct Course {
 }
 
 impl Course {
-    /// Polls on time, and a robot that stands.
+    /// Polls on time, on a stationary robot.
     pub(super) const PUNCTUAL: Self =
         Self { late: 0, handling: 0, operations: 0, fired: 0, clock_steps: 0, expected: 0, noise: 0, uncertain: 0 };
 }
@@ -75,8 +75,8 @@ pub(super) struct World<'s> {
     now: u64,
     /// Time by which the ring's clock is behind true time.
     behind: u64,
-    /// Edges to come, by when they are seen: the receiver, and the earliest time of the edge. Steps of the clock since
-    /// each sensor's last reading but one are at most [`STEPS`].
+    /// Edges to come: the time when each is seen, the receiver, and the earliest time of the edge. Steps of the clock
+    /// since each sensor's second-to-last reading are at most [`STEPS`].
     arrivals: BinaryHeap<Reverse<(u64, u8, u64)>>,
     /// Firings whose true instant is reported later: the time of the report, the sensor, the instant.
     corrections: Vec<(u64, u8, u64)>,
@@ -177,7 +177,7 @@ impl<'s> World<'s> {
                 break;
             }
             self.arrivals.pop();
-            // A driver may know when its own sensor fired before it hands in an edge of it, and may not.
+            // A driver may or may not know when a sensor fired before it reports an edge of it.
             if self.random.up_to(1) == 0 {
                 self.tell_corrections(|_, sensor| sensor == receiver);
             }
@@ -216,7 +216,7 @@ impl<'s> World<'s> {
         }
         let most = if self.one_in(64) { 4_000 } else { most };
         let width = self.random.up_to(most);
-        // As early or late in it as can be, too.
+        // Also at the ends of the interval.
         let edge = match self.random.up_to(3) {
             0 => 0,
             1 => width,
@@ -237,7 +237,7 @@ impl<'s> World<'s> {
     fn fire(&mut self, sensor: u8) {
         let mut at = self.now;
         if self.one_in(self.course.fired) {
-            // By a timer that fired before the poll, or by a circuit that took its time.
+            // A timer fired before the poll, or a circuit delayed the firing.
             let before = u64::from(self.random.up_to(400));
             let later = u64::from(self.random.up_to(1500));
             let earliest = self.last_fired[usize::from(sensor)] + 1000;
@@ -271,8 +271,8 @@ impl<'s> World<'s> {
         }
     }
 
-    /// Draws a path's length within its allowed rate of change: if possible so that the receiver repeats its last
-    /// reading, or shows the change that odometry expects. The middle of the edge's interval comes `off` before it.
+    /// Draws a path's length within its allowed rate of change: if possible, it repeats the receiver's last reading or
+    /// shows the change that odometry expects. The middle of the interval is `off` before the edge.
     fn length(&mut self, receiver: usize, least: u32, at: u64, off: i64) -> u32 {
         // A step of the clock between the two sounds changes what the ring sees of it as well.
         let steps = if self.course.clock_steps > 0 { STEPS } else { 0 };
@@ -294,7 +294,7 @@ impl<'s> World<'s> {
         }
         let count = &mut self.counts[y];
         if reading.kind == ReadingKind::First {
-            // The ring remembers nothing from before.
+            // The ring has forgotten everything before.
             self.model.forget(reading.sensor);
         }
         let seen = self.model.read(reading, self.sound, self.changes[y]);
@@ -373,7 +373,7 @@ impl<'s> World<'s> {
             20 => {
                 let more = Micros::new(self.sound.audible as u32 + self.random.up_to(20_000));
                 self.ring.set_audible(more).unwrap();
-                // Of no account to a judge that is told what to expect.
+                // The judge is told the expected change and ignores this.
                 self.ring.moving(self.random.up_to(3_000), 0, now);
             }
             _ => {

@@ -1,4 +1,4 @@
-//! [`HcSr04Ring::next`]: a ring as a task of an executor, without interrupts of its own.
+//! [`HcSr04Ring::next`]: a ring as a task of an async executor, without interrupts of its own.
 
 use eeruf_core::{Edge, Instant, Reading, Ring, RingEvent, judge::Judge, plan::Plan};
 use embedded_hal::digital::{InputPin, OutputPin};
@@ -32,7 +32,7 @@ where
     D: embedded_hal::delay::DelayNs + embedded_hal_async::delay::DelayNs,
     C: Fn() -> Instant,
 {
-    /// Puts a ring on pins that can be awaited, with a clock and a delay that can both block (for a trigger) and await.
+    /// Puts a ring on pins that can be awaited, with a clock and a delay that can block (for a trigger) and be awaited.
     ///
     /// # Errors
     /// As for [`new`](HcSr04Ring::new).
@@ -47,12 +47,12 @@ where
         Self::with_edges(ring, pins, delay, settings, Awaited { clock, high: 0, looked })
     }
 
-    /// Returns the next reading. Meanwhile it fires sensors that are due, and sleeps until a line changes or something
-    /// is due; it skips events of firings and ends of periods.
+    /// Returns the next reading. Meanwhile it fires sensors that are due, and sleeps until a line changes or a step is
+    /// due. It drops events for firings and ends of periods.
     ///
-    /// An edge is stamped late by the time that the executor takes to wake this task. If other tasks ran meanwhile, its
-    /// time is uncertain by their duration; beyond half a millisecond its reading is
-    /// [`Late`](eeruf_core::ReadingKind::Late). May be dropped at any await, such as by a `select`.
+    /// Time stamps of edges are late by the time that the executor takes to wake this task. If other tasks ran
+    /// meanwhile, the time of an edge is uncertain by their duration; beyond half a millisecond the reading is
+    /// [`Late`](eeruf_core::ReadingKind::Late). The future may be dropped at any await, for example by a `select`.
     pub async fn next(&mut self) -> Reading {
         loop {
             self.look();
@@ -94,7 +94,7 @@ where
             return;
         }
         self.edges.high ^= bit;
-        // The sensor is there, and time goes on.
+        // The sensor exists, and time never runs backwards.
         _ = self.edge_between(sensor, high, earliest, latest);
     }
 }

@@ -1,7 +1,7 @@
 //! `hands_on!`: methods that every driver forwards to its ring.
 
-/// Implements these methods for a driver whose first parameter is its ring and whose last is the number of sensors,
-/// unless they depend on the source of its edges.
+/// Implements the methods that do not depend on the source of edges, for a driver whose first type parameter is its
+/// ring and whose last is the number of sensors.
 macro_rules! hands_on {
     ($driver:ident, $($parameter:ident),+ $(; $edges:ident)?) => {
         impl<P, J, $($parameter,)+ const K: usize, const H: usize $(, $edges)?>

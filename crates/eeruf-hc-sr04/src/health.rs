@@ -1,4 +1,4 @@
-//! [`Health`]: the health of a sensor, judging by its line or its answers.
+//! [`Health`]: the health of a sensor, judged by its line or its answers.
 
 use core::fmt;
 
@@ -7,16 +7,16 @@ use core::fmt;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub enum Health {
-    /// The line answers, or it has been triggered too seldom to know.
+    /// The line answers, or the sensor has not been triggered often enough to know.
     #[default]
     Well,
     /// No answer to triggers: no sensor there, a cut wire, or no interrupts at all.
     Missing,
-    /// The line was high when it was to be triggered.
+    /// The line was high when the sensor was to be triggered.
     StuckHigh,
     /// Several pulses or answers followed one trigger, or an invalid one.
     Chatters,
-    /// An edge or a part of its answer got lost: the line fell without having risen, or rose and was low again without
+    /// An edge or a part of an answer was lost: the line fell without having risen, or rose and was low again without
     /// having fallen.
     LosesEdges,
     /// A pin, the bus or the serial line reported an error.

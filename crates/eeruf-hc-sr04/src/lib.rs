@@ -4,28 +4,28 @@
 //! time is the width of that pulse. Without an echo the line falls after the sensor's own time-out, 38 ms or more. The
 //! driver turns pulses into echoes for [`Ring`](eeruf_core::Ring), and handles the faults of real wiring:
 //!
-//! - edges within 100 us of the trigger, which are the trigger itself seen through the cable;
+//! - edges within 100 us of the trigger, which are crosstalk of the trigger in the cable;
 //! - pulses too short for an echo, and further pulses of a line that chatters;
 //! - a line stuck high: the sensor is not triggered, and its reading is
 //!   [`ReadingKind::Stuck`](eeruf_core::ReadingKind::Stuck);
 //! - a line that never rises after its trigger: the reading is
 //!   [`ReadingKind::Unanswered`](eeruf_core::ReadingKind::Unanswered), never free space;
-//! - a sensor out of range, or edges that get lost on the way: [`HcSr04Ring::health`] says so;
+//! - a sensor that is missing, or edges that get lost: [`HcSr04Ring::health`] reports it;
 //! - a schedule that would trigger a sensor again too soon: it is refused when the ring is set up;
-//! - a loop that polls too seldom: [`Pace`] says so.
+//! - a loop that polls too rarely: [`Pace`] reports it.
 //!
 //! The ring can also be a [`FlowRing`](eeruf_core::flow::FlowRing), which fires by flow.
 //!
-//! With feature `async` a ring is a task: `ring.next().await` waits for lines and deadlines by `embedded-hal-async`,
-//! and the next reading is its value (`HcSr04Ring::awaited`).
+//! With feature `async` a ring is a task: `ring.next().await` waits for lines and deadlines through
+//! `embedded-hal-async` and returns the next reading (`HcSr04Ring::awaited`).
 //!
 //! A loop that samples lines instead of using interrupts reports edges as intervals: see [`Sampler`].
 //!
-//! Where hardware triggers the modules and times their lines, such as PIO, RMT or a timer, see [`capture`]. Modules
-//! that measure by themselves and report a value, over I2C, a serial line or by a pulse, are in [`measuring`].
+//! If hardware such as PIO, RMT or a timer triggers the modules and times their lines, see [`capture`]. Modules that
+//! measure by themselves and report a value, over I2C, a serial line or a pulse, are in [`measuring`].
 //!
-//! It is a crate beside `eeruf-core` and not a feature of it, because core has no dependencies at all and a major
-//! version of `embedded-hal` must not become a major version of core.
+//! This crate is not a feature of `eeruf-core`, because core has no dependencies and a major version of `embedded-hal`
+//! must not become a major version of core.
 //!
 //! ```no_run
 //! # use embedded_hal::{delay::DelayNs, digital::{InputPin, OutputPin}};

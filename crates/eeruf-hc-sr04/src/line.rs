@@ -8,7 +8,7 @@ use crate::settings::Settings;
 /// The state of a sensor between trigger and echo.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Pulse {
-    /// No pulse is expected: before the first trigger, and after one that could not be given.
+    /// No pulse is expected: before the first trigger, and after a trigger that failed.
     Idle,
     /// The sensor was triggered, and the line has not risen.
     Awaited,
@@ -18,7 +18,7 @@ pub(crate) enum Pulse {
     Over(Instant, u16),
 }
 
-/// The width of a pulse that no edge continues after a gap: hardware measured it, or it is too long.
+/// Marker of a pulse that no further edge can continue: hardware measured it, or it is too long.
 const ENDED: u16 = u16::MAX;
 
 /// The meaning of an edge for a firing.
@@ -28,14 +28,13 @@ pub(crate) enum Shown {
     Nothing,
     /// The line rose, so the sensor listens.
     Answer,
-    /// The line rose, and the end of a pulse that began before this firing got lost: that silence may have been an
-    /// echo.
+    /// The line rose, and the end of a pulse from before this firing was lost: that silence may have been an echo.
     AnswerAfterLoss,
     /// The pulse was too short for an echo: the line's rise was no answer.
     Disturbance,
     /// The pulse ended with the sensor's own time-out: the sensor listened and heard nothing.
     Silence,
-    /// The pulse continues after a short gap: its apparent end was a disturbance.
+    /// The pulse continues after a short gap: its apparent end was noise.
     GoesOn,
     /// The echo arrived at least this long after the sound was sent, and at most this much later.
     Echo(Micros, Micros),
@@ -51,7 +50,7 @@ pub(crate) struct Line {
     rose_before: u16,
     /// Number of consecutive firings without a pulse.
     silent: u8,
-    /// The flaw of this firing: more than one pulse or one too short, or an edge without its counterpart.
+    /// The flaw of this firing: more than one pulse, one too short, or an edge without its counterpart.
     flaw: Health,
     pub(crate) health: Health,
 }
@@ -67,9 +66,9 @@ impl Line {
         health: Health::Well,
     };
 
-    /// Returns the meaning of an edge for the firing at `fired`; it was seen at most `before` after it came.
+    /// Returns the meaning of an edge for the firing at `fired`; the edge was seen at most `before` after it came.
     pub(crate) fn edge(&mut self, edge: Edge, before: Micros, fired: Instant, settings: &Settings) -> Shown {
-        // Without a trigger nothing is seen through the cable.
+        // Without a trigger there is no crosstalk in the cable.
         let deaf = if self.is_held { Micros::ZERO } else { settings.deaf };
         if !edge.at.has_reached(fired) || edge.at.since(fired) < deaf {
             return Shown::Nothing;
@@ -93,11 +92,11 @@ impl Line {
                     self.flaw = Health::Chatters;
                     return Shown::Disturbance;
                 }
-                // The module's own time-out only if it is surely as long. With an Option an AVR hears nothing.
+                // The module's own time-out only if certainly as long. With an Option an AVR hears nothing.
                 let is_echo = least < settings.longest;
                 let known = if is_echo { width.as_micros().min(ENDED.into()) as u16 } else { ENDED };
                 self.pulse = Pulse::Over(rose, known);
-                // A fall and a rise may have got lost since the trigger before, unless the line was seen to be high.
+                // A fall and a rise may have been lost since the previous trigger, unless the line was seen high.
                 match is_echo {
                     true => Shown::Echo(least, rose_before.saturating_add(before.min(width))),
                     false if self.is_held || rose.has_reached(fired) => Shown::Silence,
@@ -109,7 +108,7 @@ impl Line {
                 self.health = Health::LosesEdges;
                 Shown::AnswerAfterLoss
             }
-            // A gap as short as that is a disturbance: the pulse goes on. But its silence counts once.
+            // So short a gap is noise: the pulse goes on. But its silence counts once.
             (Pulse::Over(rose, width), true)
                 if width != ENDED && edge.at.since(rose + Micros::new(width.into())) < settings.shortest =>
             {
@@ -156,8 +155,8 @@ impl Line {
         matches!(self.pulse, Pulse::Rose(rose) if now.since(rose) <= longest_hold)
     }
 
-    /// Sets the health by the last firing, before the next trigger. Returns true if its line rose and never fell: an
-    /// edge got lost, and the silence may have been an echo.
+    /// Sets the health by the last firing, before the next trigger. Returns true if the line rose and never fell: an
+    /// edge was lost, and the silence may have been an echo.
     pub(crate) fn end_firing(&mut self, missing_after: u8) -> bool {
         match self.pulse {
             Pulse::Awaited if self.flaw == Health::Well => {
@@ -166,10 +165,10 @@ impl Line {
                     self.health = Health::Missing;
                 }
             }
-            // A pulse may follow what was taken for the end of one whose beginning was too soon after the trigger.
+            // A pulse may follow the apparent end of a pulse that began within the deaf time.
             Pulse::Over(..) if self.flaw == Health::LosesEdges => self.health = Health::Well,
             Pulse::Awaited | Pulse::Over(..) => self.health = self.flaw,
-            // If the line is still high it is stuck, as will be seen.
+            // If the line is still high, the next trigger finds it stuck.
             Pulse::Rose(_) => self.health = Health::LosesEdges,
             Pulse::Idle => {}
         }

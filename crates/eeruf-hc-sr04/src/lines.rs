@@ -24,13 +24,13 @@ pub trait FlexPin: InputPin {
     /// Drives the line low.
     ///
     /// # Errors
-    /// The pin's own.
+    /// The error of the pin.
     fn drive_low(&mut self) -> Result<(), Self::Error>;
 
     /// Makes the pin an input again.
     ///
     /// # Errors
-    /// The pin's own.
+    /// The error of the pin.
     fn release(&mut self) -> Result<(), Self::Error>;
 }
 
@@ -53,7 +53,7 @@ impl<T, I, D, const K: usize> Lines<T, I, D, K> {
         self.settings.allow(min_refire)
     }
 
-    /// Returns the meaning of this edge for the firing at `fired`; it was seen at most `before` after it came.
+    /// Returns the meaning of an edge for the firing at `fired`; the edge was seen at most `before` after it came.
     pub(crate) fn edge(&mut self, edge: Edge, before: Micros, fired: Instant) -> Shown {
         let line = self.lines.get_mut(usize::from(edge.sensor));
         line.map_or(Shown::Nothing, |line| line.edge(edge, before, fired, &self.settings))
@@ -69,7 +69,7 @@ impl<T, I, D, const K: usize> Lines<T, I, D, K> {
     pub(crate) fn triggered(&mut self, sensor: u8, now: Instant) -> Trigger {
         let given = Trigger::Given { lost_an_edge: false };
         let Some(line) = self.lines.get_mut(usize::from(sensor)) else { return given };
-        // One that holds its line does not hear a trigger. One that has long held it has lost the end of its pulse.
+        // A sensor that holds its line ignores triggers. If it has held it for long, the end of its pulse was lost.
         if line.listens_still(now, self.settings.longest_hold) {
             return given;
         }
@@ -126,7 +126,7 @@ impl<T: OutputPin, I: InputPin, D: DelayNs, const K: usize> Lines<T, I, D, K> {
 
 #[cfg(feature = "async")]
 impl<T, I: InputPin + embedded_hal_async::digital::Wait, D, const K: usize> Lines<T, I, D, K> {
-    /// The level of a sensor's line; none if it cannot be read.
+    /// The level of a sensor's line; `None` if it cannot be read.
     pub(crate) fn level(&mut self, sensor: u8) -> Option<bool> {
         self.pins.get_mut(usize::from(sensor))?.echo.is_high().ok()
     }
@@ -151,7 +151,7 @@ impl<T, I: InputPin + embedded_hal_async::digital::Wait, D, const K: usize> Line
 }
 
 impl<T, I: FlexPin, D: DelayNs, const K: usize> Lines<T, I, D, K> {
-    /// Pulls the line of a sensor low if its trigger was withheld because the line is stuck. Returns true if it did.
+    /// Pulls the line of a sensor low if its trigger was withheld because the line is stuck. Returns true if so.
     pub(crate) fn recover(&mut self, sensor: u8) -> bool {
         let x = usize::from(sensor);
         let (Some(line), Some(pins)) = (self.lines.get_mut(x), self.pins.get_mut(x)) else { return false };
@@ -173,11 +173,11 @@ impl<T, I: FlexPin, D: DelayNs, const K: usize> Lines<T, I, D, K> {
 pub(crate) enum Trigger {
     /// The trigger was given.
     Given {
-        /// True if the pulse of the firing before began and never ended: its silence may have been an echo.
+        /// True if the previous firing's pulse began and never ended: its silence may have been an echo.
         lost_an_edge: bool,
     },
     /// The trigger was withheld: the line is stuck, or cannot be read.
     Withheld,
-    /// The trigger was withheld: the sensor has heard nothing of an earlier firing yet and holds its line.
+    /// The trigger was withheld: the sensor still listens after an earlier firing and holds its line.
     ListensStill,
 }

@@ -7,7 +7,7 @@ use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingEvent};
 /// Watches whether a loop polls a ring often enough.
 #[derive(Clone, Copy, Debug)]
 pub struct Pace {
-    /// Sensors with a reading that is not late since then, and with two in a row, bit x for sensor x.
+    /// Sensors with a punctual reading since `since`, and with two in a row, bit x for sensor x.
     heard: u64,
     twice: u64,
     since: Instant,
@@ -15,20 +15,19 @@ pub struct Pace {
 }
 
 impl Pace {
-    /// Begins now.
+    /// Starts watching at `now`.
     pub const fn new(now: Instant) -> Self {
         Self { heard: 0, twice: 0, since: now, max_late: Micros::ZERO }
     }
 
-    /// Takes in an event of the ring's poll.
+    /// Records an event that a poll of the ring returned.
     pub fn observe(&mut self, event: &RingEvent) {
         match event {
             RingEvent::Reading(reading) => {
                 let bit = 1_u64.checked_shl(reading.sensor.into()).unwrap_or(0);
                 let heard = self.heard & bit;
                 self.heard &= !bit;
-                // A reading without a time leaves nothing to compare the next one with. One from beyond the window
-                // has its time.
+                // A late reading without an echo time leaves the next one nothing to compare with.
                 if reading.kind != ReadingKind::Late || reading.t_echo.is_some() {
                     self.twice |= heard;
                     self.heard |= bit;
@@ -39,21 +38,21 @@ impl Pace {
         }
     }
 
-    /// Returns true, about once a second, if the loop is too slow: a sensor had no two such readings in it, or a
-    /// table's firings came more than a millisecond late, which makes readings ambiguous.
+    /// Returns true, about once a second, if the loop is too slow: in that second a sensor had no two punctual readings
+    /// in a row, or a table's firings were more than a millisecond late, which makes readings ambiguous.
     pub fn too_slow<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize>(
         &mut self,
         ring: &Ring<P, J, K, E, H>,
         now: Instant,
     ) -> bool {
-        // Twice in two seconds, whatever the loop does in between.
+        // So it answers twice in two seconds, whatever the loop does.
         if now.since(self.since) < Micros::from_millis(950) {
             return false;
         }
         let Self { twice, max_late, .. } = core::mem::replace(self, Self::new(now));
         let misses = (0..ring.sensors() as u8)
             .any(|x| ring.is_enabled(x) && twice.checked_shr(x.into()).is_none_or(|bits| bits & 1 == 0));
-        // Of a plan that knows one firing alone a late poll costs time and nothing else; a paused one knows none.
+        // If a plan knows only one firing ahead, late polls cost only time; a paused plan knows none.
         let is_late = max_late > Micros::from_millis(1) && ring.upcoming().nth(1).is_some();
         (misses || is_late) && ring.upcoming().next().is_some()
     }
@@ -65,7 +64,7 @@ mod tests {
     use eeruf_core::RingConfig;
     use eeruf_core::flow::{BeliefSettings, FlowRing, TurnSettings};
 
-    // Four sensors, polled so often for two seconds.
+    // Four sensors, polled at this interval for two seconds.
     fn is_slow(every: Micros, pauses: bool) -> bool {
         let mut now = Instant::from_micros(u32::MAX - 500_000);
         let window = RingConfig::new().with_window(Micros::from_millis(37));

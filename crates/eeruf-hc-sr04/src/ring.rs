@@ -46,7 +46,7 @@ impl<const N: usize> Edges for &EdgeQueue<N> {
 impl<P: Plan, J: Judge, T: OutputPin, I: InputPin, D: DelayNs, const K: usize, const H: usize>
     HcSr04Ring<Ring<P, J, K, 1, H>, T, I, D, K>
 {
-    /// Puts a ring on its pins. Its window should exceed the longest echo by a millisecond, because the line rises only
+    /// Puts a ring on its pins. The window should exceed the longest echo by a millisecond, because the line rises only
     /// about half a millisecond after the trigger.
     ///
     /// # Errors
@@ -64,7 +64,7 @@ impl<P: Plan, J: Judge, T: OutputPin, I: InputPin, D: DelayNs, const K: usize, c
 impl<P: Plan, J: Judge, T: OutputPin, I: InputPin, D: DelayNs, const K: usize, const H: usize, Q: Edges>
     HcSr04Ring<Ring<P, J, K, 1, H>, T, I, D, K, Q>
 {
-    /// Like [`new`](HcSr04Ring::new), with the queue that the edge interrupt fills. Each poll reads its edges first.
+    /// Like [`new`](HcSr04Ring::new), with a queue that the edge interrupt fills. Each poll first empties it.
     ///
     /// # Errors
     /// See [`new`](HcSr04Ring::new).
@@ -80,10 +80,10 @@ impl<P: Plan, J: Judge, T: OutputPin, I: InputPin, D: DelayNs, const K: usize, c
 
     /// Like [`Ring::poll`]. [`RingEvent::Fire`] is for information: the sensor has been triggered already.
     ///
-    /// The queue's edges are read first. Read the clock for `now` just before the call: then no window closes before a
-    /// punctual edge is read, however long the main loop was busy.
+    /// The queue's edges are read first. Read the clock for `now` just before the call, so that no window closes before
+    /// a punctual edge is read, however long the main loop was busy.
     ///
-    /// A trigger takes [`Settings::trigger`], 10 us, during which the driver waits: setting an alarm would take as
+    /// The driver busy-waits for the width of a trigger ([`Settings::trigger`], 10 us): setting an alarm would take as
     /// long.
     pub fn poll(&mut self, now: Instant) -> Option<RingEvent> {
         self.poll_expecting(now, |_| 0)
@@ -110,7 +110,7 @@ impl<R, T, I: FlexPin, D: DelayNs, const K: usize, Q> HcSr04Ring<R, T, I, D, K, 
     /// reading of this firing is still [`Stuck`](eeruf_core::ReadingKind::Stuck); the next firing triggers the module
     /// if its line stays low.
     ///
-    /// Module and pin drive against each other meanwhile: put a resistor of 1 kOhm into the line.
+    /// Module and pin drive against each other meanwhile: put a 1 kOhm resistor into the line.
     pub fn recover(&mut self, sensor: u8) -> bool {
         self.lines.recover(sensor)
     }
@@ -128,9 +128,9 @@ impl<P: Plan, J: Judge, const K: usize, const H: usize> HcSr04Ring<Ring<P, J, K,
 }
 
 impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize> HcSr04Ring<Ring<P, J, K, 1, H>, T, I, D, K> {
-    /// Polls like [`Ring::poll`] at the instant `at` at which hardware triggered the sensor that was due, by
-    /// [`Ring::upcoming`], without triggering it again. Call it until there is no event, after all edges up to `at` and
-    /// before all later ones. The line was not checked to be low: a sensor that still held it counts as unanswered.
+    /// Polls like [`Ring::poll`] at the instant `at` at which hardware triggered the due sensor of [`Ring::upcoming`],
+    /// without triggering it again. Call it until there is no event, after all edges up to `at` and before all later
+    /// ones. The line is not checked before a trigger: a sensor that still held it counts as unanswered.
     pub fn poll_triggered(&mut self, at: Instant) -> Option<RingEvent> {
         let event = self.ring.poll(at)?;
         if let RingEvent::Fire { sensor, .. } = event {
@@ -150,13 +150,13 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize, Q> HcSr04Ring<R
         edges: Q,
     ) -> Result<Self, SetupError> {
         settings.allow(ring.plan().min_refire())?;
-        // A line that does not rise is no free space.
+        // A line that does not rise is not free space.
         ring.set_silence(Silence::NeedsAnswer);
         Ok(Self { ring, lines: Lines::new(pins, delay, settings), edges })
     }
 
     fn has_triggered(&mut self, sensor: u8, trigger: Trigger) {
-        // It is there: it has just fired.
+        // The sensor exists: it has just fired.
         _ = match trigger {
             Trigger::Given { lost_an_edge: false } => Ok(()),
             Trigger::Given { lost_an_edge: true } => self.ring.forget(sensor),
@@ -177,7 +177,7 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize, Q> HcSr04Ring<R
 
     fn show(&mut self, sensor: u8, shown: Shown) -> Result<(), SensorError> {
         match shown {
-            // The ring says if it has no such sensor.
+            // The ring reports an error if it has no such sensor.
             Shown::Nothing if usize::from(sensor) >= self.ring.sensors() => self.ring.answered(sensor),
             Shown::Nothing => Ok(()),
             Shown::Answer => self.ring.holds(sensor),
@@ -203,8 +203,8 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize, Q> HcSr04Ring<R
     }
 
     /// Reports an edge like [`edge`](Self::edge) that came between two instants: the line was last seen without it at
-    /// `earliest`, and with it at `latest`. It is for loops that sample lines: see [`Sampler`](crate::Sampler). The
-    /// uncertainty of a pulse is that of both its edges, and is treated as by [`Ring::echo_between`].
+    /// `earliest`, and with it at `latest`. Meant for loops that sample lines: see [`Sampler`](crate::Sampler). The
+    /// uncertainty of a pulse is the sum for both edges, handled as in [`Ring::echo_between`].
     ///
     /// # Errors
     /// As for [`Ring::echo_between`].
@@ -223,11 +223,11 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize, Q> HcSr04Ring<R
 
     fn edge_seen(&mut self, edge: Edge, before: Micros) -> Result<(), SensorError> {
         let Some(fired) = self.ring.last_firing(edge.sensor) else {
-            // The ring says that it is out of range.
+            // The ring returns the error for a sensor out of range.
             return self.ring.echo(edge.sensor, edge.at);
         };
         match self.lines.edge(edge, before, fired) {
-            // Until then the line may rise again: a gap that is no end.
+            // Until `settled` the line may rise again: a mere gap in the pulse.
             Shown::Echo(least, width) => {
                 let settled = edge.at + self.lines.shortest();
                 self.ring.echo_within(edge.sensor, fired + least, width, settled)
@@ -236,7 +236,7 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize, Q> HcSr04Ring<R
         }
     }
 
-    /// Like [`Ring::fired`], for a sensor that was triggered at another instant than the poll said.
+    /// Like [`Ring::fired`], for a sensor that was not triggered at the instant of the poll.
     ///
     /// # Errors
     /// [`SensorError`] for a sensor out of range.
@@ -244,8 +244,8 @@ impl<P: Plan, J: Judge, T, I, D, const K: usize, const H: usize, Q> HcSr04Ring<R
         self.ring.fired(sensor, at)
     }
 
-    /// Health of a sensor at its last complete firing, as far as its line shows it. A sensor that the ring does not
-    /// have is [`Health::Missing`].
+    /// Health of a sensor at its last complete firing, judged by its line. A sensor that the ring does not have is
+    /// [`Health::Missing`].
     pub fn health(&self, sensor: u8) -> Health {
         self.lines.health(sensor)
     }

@@ -2,7 +2,7 @@
 
 use eeruf_core::Instant;
 
-/// The levels of `K` echo lines as seen by a loop without edge interrupts.
+/// Turns the levels of `K` echo lines into edges, for a loop without edge interrupts.
 ///
 /// ```
 /// use eeruf_core::Instant;
@@ -10,7 +10,7 @@ use eeruf_core::Instant;
 /// let at = Instant::from_micros;
 /// let mut lines = Sampler::<1>::new(at(0));
 /// assert_eq!(lines.look(0, false, at(100), at(104)), None);
-/// // It rose when it was not looked at.
+/// // The line rose between two looks.
 /// assert_eq!(lines.look(0, true, at(400), at(404)), Some((at(100), at(404))));
 /// ```
 #[derive(Clone, Debug)]
@@ -20,7 +20,7 @@ pub struct Sampler<const K: usize> {
 }
 
 impl<const K: usize> Sampler<K> {
-    /// A sampler of lines that are low `now`.
+    /// A sampler of lines that are low at `now`.
     pub const fn new(now: Instant) -> Self {
         Self { seen: [(now, false); K] }
     }

@@ -10,30 +10,30 @@ use crate::error::SetupError;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[non_exhaustive]
 pub struct Settings {
-    /// Width of the trigger's pulse.
+    /// Width of the trigger pulse.
     pub trigger: Micros,
-    /// Time after the trigger in which edges are crosstalk of the trigger through the cable.
+    /// Time after the trigger in which edges are crosstalk of the trigger in the cable.
     pub deaf: Micros,
-    /// Shortest pulse that is an echo: 100 us is 17 mm, less than the sensor can measure.
+    /// Shortest pulse that counts as an echo: 100 us is 17 mm, less than the sensor can measure.
     pub shortest: Micros,
     /// Latest rise after the trigger: a line that rises later was raised by another sensor, whose wires are exchanged.
     pub latest_rise: Micros,
-    /// Shortest pulse that is the sensor's own time-out, which may be a nineteenth short, and not an echo.
+    /// Shortest pulse that is the sensor's own time-out (up to a nineteenth short), not an echo.
     pub longest: Micros,
     /// Longest time for which a healthy sensor holds its line if nothing is in range; many clones take 130 to 200 ms. A
-    /// line that rose after its trigger and has been high for less is not stuck.
+    /// line that rose after its trigger and has been high for a shorter time is not stuck.
     pub longest_hold: Micros,
     /// Least time between two triggers of a sensor.
     pub min_retrigger: Micros,
-    /// Time for which [`recover`](crate::HcSr04Ring::recover) pulls a stuck line low, a choice: 200 us, as sketches on
-    /// forum.arduino.cc (524295) do.
+    /// Time for which [`recover`](crate::HcSr04Ring::recover) pulls a stuck line low: 200 us, an arbitrary choice, as
+    /// in sketches on forum.arduino.cc (524295).
     pub recovery: Micros,
     /// Number of consecutive firings without a pulse after which a sensor counts as missing.
     pub missing_after: u8,
 }
 
 impl Settings {
-    /// The times of this module. `None` if it does not answer by the width of a pulse that ends without an echo too.
+    /// The times of this module. `None` unless it answers with the width of a pulse that also ends without an echo.
     ///
     /// ```
     /// use eeruf_hc_sr04::{Settings, modules::{HC_SR04, PING, SRF08}};

@@ -1,4 +1,4 @@
-//! A ring as a task: an executor of one task, whose clock jumps to the next edge or the end of a delay.
+//! A ring as a task, on an executor of one task whose clock jumps to the next edge or the end of a delay.
 
 use std::cell::RefCell;
 use std::convert::Infallible;
@@ -13,10 +13,10 @@ use eeruf_hc_sr04::{HcSr04Ring, Pins, Settings};
 use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
 use embedded_hal_async::digital::Wait;
 
-/// Modules, each before a wall of its own, and the clock.
+/// Modules that each face a wall of their own, and the clock.
 struct World {
     now_us: u32,
-    /// The widths of pulses; `None` for a module that is missing.
+    /// The pulse width of each module; `None` for a missing one.
     widths_us: Vec<Option<u32>>,
     /// Edges to come: time, sensor, level.
     coming: Vec<(u32, usize, bool)>,
@@ -118,7 +118,7 @@ impl embedded_hal_async::delay::DelayNs for Delay {
     }
 }
 
-/// Runs a task to its end, or returns `None` at this time.
+/// Runs a task to its end; returns `None` if it has not ended by this time.
 fn run<F: Future>(world: &Rc<RefCell<World>>, until_us: u32, task: F) -> Option<F::Output> {
     let mut task = pin!(task);
     loop {
@@ -161,7 +161,7 @@ fn ten_seconds(piece_us: u32) -> ([(Tally<u32>, u32); 4], u32) {
     (tallies, worst)
 }
 
-// Also if the future is dropped all the time.
+// The future may even be dropped all the time.
 #[test]
 fn next_reads_what_each_module_sees() {
     for piece_us in [u32::MAX / 2, 1] {

@@ -1,5 +1,5 @@
-//! Modules that a timer triggers while the loop is late, whose lines are stamped or whose pulses are measured by
-//! hardware, with results that are late, lost or duplicated.
+//! Modules triggered by a timer while the loop is late. Hardware stamps their edges or measures their pulses, with
+//! results that are late, lost or duplicated.
 
 use eeruf_core::{
     Edge, Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, ScheduledRing, SensorError, Tally,
@@ -18,7 +18,7 @@ enum Answer {
     Pulse(u32),
     /// No edge at all.
     Cut,
-    /// The line rises and its end is lost.
+    /// The line rises, and its fall is lost.
     LostFall,
     /// The line falls, and its rise was lost.
     LostRise,
@@ -26,7 +26,7 @@ enum Answer {
     Twice(u32),
 }
 
-/// Runs several periods in a loop that comes round every 0 to 5 ms; with `pulses` hardware measures widths instead of
+/// Runs several periods in a loop with a turn every 0 to 5 ms; with `pulses`, hardware measures widths instead of
 /// stamping edges.
 fn run(pulses: bool, periods: u32, answer: impl Fn(u8, u32) -> Answer) -> ([Tally<u32>; K], [Health; K]) {
     let mut r = Rng::with_seed(20_000);

@@ -1,4 +1,4 @@
-//! Rings on peripherals that trigger and capture: a PIO simulated cycle by cycle, the receiver of an RMT, the capture
+//! Rings on peripherals that trigger and capture: a PIO simulated cycle by cycle, an RMT receiver, and the capture
 //! registers of a timer. The loop is late, and results are late, lost or duplicated.
 
 #[path = "shared/pio.rs"]
@@ -24,7 +24,7 @@ fn us(us: u32) -> Micros {
     Micros::new(us)
 }
 
-/// The space before a module, or a fault of its line.
+/// The space in front of a module, or a fault of its line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Answer {
     /// A pulse of this many microseconds.
@@ -135,7 +135,7 @@ struct Pio {
     machines: [StateMachine; K],
     lines: [PioLine; K],
     words: [VecDeque<u32>; K],
-    /// Greatest difference of a trigger from its requested instant.
+    /// Greatest difference between a trigger and its requested instant.
     off: u32,
     awaited: [Instant; K],
 }
@@ -249,7 +249,7 @@ impl Captures for Rmt {
     fn fire(&mut self, sensor: u8, at: Instant, now: Instant) -> Option<Instant> {
         let x = usize::from(sensor);
         self.run(x, now);
-        // What the line did before the receiver is started is lost.
+        // Edges before the receiver is started are lost.
         let at = if now.has_reached(at) { now } else { at };
         while self.modules.edge(sensor, at).is_some() {}
         self.edges[x].clear();
@@ -275,11 +275,11 @@ impl Captures for Rmt {
     }
 }
 
-/// Two capture channels for each module, read when the loop comes round.
+/// Two capture channels for each module, read on each turn of the loop.
 struct Timer {
     modules: Modules,
     lines: [TimerLine; K],
-    /// Registers that are read late, and the time since when.
+    /// Registers that are read late, and the time when they were captured.
     kept: [(Captured, Option<Instant>); K],
     fires: [Option<Instant>; K],
     /// All firings.
@@ -360,7 +360,7 @@ fn run<C: Captures>(hardware: C, periods: u32) -> ([Tally<u32>; K], [Health; K],
     run_driver(driver(hardware), periods)
 }
 
-/// Runs a loop that comes round every 0 to 5 ms, for some periods.
+/// Runs a loop with a turn every 0 to 5 ms, for some periods.
 fn run_driver<P: Plan, J: Judge, C: Captures, const H: usize>(
     mut driver: CaptureRing<Ring<P, J, K, 1, H>, C, K>,
     periods: u32,
@@ -392,7 +392,7 @@ fn wall(sensor: u8) -> u32 {
     3_000 + 2_000 * u32::from(sensor)
 }
 
-/// Every firing's instant is the hardware's, so that late loops cost time and no reading.
+/// The hardware gives the instant of every firing, so late loops cost time but no readings.
 #[test]
 fn flow_on_hardware_accepts_own_walls_in_late_loops() {
     fn accepted<C: Captures>(hardware: C) -> C {
@@ -433,7 +433,7 @@ fn pio_program_times_edges_to_3_us() {
     }
     assert_eq!(pio.off, 0, "the trigger is exact");
 
-    // The word that ends it has no room in the FIFO: the time says when the state machine can fire again.
+    // The FIFO has no room for the word that ends the firing: the time tells when the state machine can fire again.
     let fired = pio.awaited[0];
     assert_eq!(pio.fire(0, fired + us(60_000), fired + us(45_500)), None);
     assert!(pio.fire(0, fired + us(60_000), fired + us(46_100)).is_some());
@@ -479,7 +479,7 @@ fn rmt_symbols_become_edges() {
         [(false, 450), (true, 470), (false, 470 + IDLE)],
         "high at the start"
     );
-    // Without an end: the memory was full.
+    // The memory was full, so there is no end.
     assert_eq!(rmt_edges(&[symbol(high(100), high(100)); 4]).last(), Some(&(false, 450 + 600)));
     assert_eq!(
         rmt_edges(&[symbol(high(100), 50); 4]).last(),
@@ -511,7 +511,7 @@ fn timer_registers_become_edges() {
     assert_eq!(unread.edge(), None, "from before the first reading");
 }
 
-// Firings that the hardware has are made, and known to the ring, before anything is changed.
+// Firings that the hardware holds happen, and reach the ring, before anything is changed.
 #[test]
 fn held_ring_lets_its_driver_be_changed() {
     let mut driver = driver(Timer::new(Modules::new(|sensor| (Answer::Pulse(wall(sensor)), Trouble::None))));
@@ -530,7 +530,7 @@ fn held_ring_lets_its_driver_be_changed() {
     }
     assert!(last.is_some());
     driver.driver_mut().unwrap().disable(3).unwrap();
-    // A firing that is due is not made while the ring is held.
+    // A due firing does not happen while the ring is held.
     for _ in 0..100 {
         now += us(2_000);
         while let Some(event) = driver.poll(now) {
@@ -549,7 +549,7 @@ fn held_ring_lets_its_driver_be_changed() {
     }
 }
 
-// After a loop that stood still firings come late, and those that follow move with them.
+// After a stalled loop firings come late, and all later ones move with them.
 #[test]
 fn ring_knows_each_firing_after_stalls() {
     let mut driver = driver(Timer::new(Modules::new(|sensor| (Answer::Pulse(wall(sensor)), Trouble::None))));
@@ -567,7 +567,7 @@ fn ring_knows_each_firing_after_stalls() {
         }
     }
     let mut fired = driver.into_hardware().fired;
-    // Looked at by sensor, and not in the order of time.
+    // They were collected by sensor, not in order of time.
     fired.sort_by_key(|(_, at)| at.since(BEGIN));
     assert_eq!(fires[..], fired[..fires.len()]);
     assert!(fires.len() > 2_000 && accepted > 1_000, "{} firings, {accepted} accepted", fires.len());

@@ -1,4 +1,4 @@
-//! Four modules in two pairs, each with a shared trigger line behind a port expander: pins that are slow and can fail.
+//! Four modules in two pairs; each pair shares a trigger line behind a port expander, whose pins are slow and can fail.
 
 use core::cell::{Cell, RefCell};
 
@@ -10,7 +10,7 @@ use eeruf_hc_sr04::{HcSr04Ring, Health, Pins, Settings};
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{Error, ErrorKind, ErrorType, InputPin, OutputPin};
 
-/// Modules 0 and 2 fire together, and 1 and 3.
+/// Modules 0 and 2 fire together, as do 1 and 3.
 static RING: VerifiedSchedule<4, 2, EachSensor<4>> = schedule! {
     period_us: 76_000,
     t_fire_a_us: [0, 32_000, 0, 32_000],
@@ -38,7 +38,7 @@ struct World {
 }
 
 impl World {
-    /// Writes the expander's outputs. The modules of a line that falls begin, unless they are measuring.
+    /// Writes the expander's outputs. When a line falls, its modules start unless they are measuring.
     fn write(&self, outputs: u8) -> Result<(), Failed> {
         self.now_us.set(self.now_us.get() + TRANSFER_US);
         if self.fails.get() {
@@ -87,7 +87,7 @@ impl OutputPin for Trigger<'_> {
     }
 }
 
-/// A module's line, on a pin of the board itself.
+/// A module's echo line, on a pin of the board itself.
 struct Echo<'w>(&'w World, usize);
 
 impl ErrorType for Echo<'_> {
@@ -127,7 +127,7 @@ fn driver(world: &World) -> Driver<'_> {
     HcSr04Ring::new(ring, pins, Delay(world), Settings::default()).unwrap()
 }
 
-/// The kinds of this many readings of each module, and the greatest error of an echo time.
+/// The kinds of at least `count` readings of each module, and the greatest error of an echo time.
 fn readings(driver: &mut Driver<'_>, world: &World, count: usize) -> ([Vec<ReadingKind>; 4], u32) {
     let (mut kinds, mut off) = ([vec![], vec![], vec![], vec![]], 0);
     while kinds.iter().any(|of| of.len() < count) {
@@ -136,7 +136,7 @@ fn readings(driver: &mut Driver<'_>, world: &World, count: usize) -> ([Vec<Readi
         edges.sort_by_key(|edge| edge.at.as_micros());
         let next = edges.first().map_or(due, |edge| edge.at.as_micros().min(due));
         world.now_us.set(world.now_us.get().max(next));
-        // The interrupts of lines, which wait for nothing.
+        // Interrupts of the lines are immediate.
         let later = edges.split_off(edges.partition_point(|edge| edge.at.as_micros() <= world.now_us.get()));
         world.edges.borrow_mut().extend(later);
         edges.into_iter().for_each(|edge| driver.edge(edge).unwrap());

@@ -40,7 +40,7 @@ impl InputPin for Line {
 
 type Driver<const K: usize> = HcSr04Ring<FlowRing<K>, Line, Line, NoopDelay, K>;
 
-/// A driver of modules that rest for their usual time, on lines of which one may be stuck high.
+/// A driver of modules with their usual rest time; the line of one may be stuck high.
 fn driver<const K: usize>(seed: u32, high: Option<usize>, settings: Settings) -> Result<Driver<K>, SetupError> {
     let turns = TurnSettings::new(seed);
     let ring =
@@ -49,8 +49,8 @@ fn driver<const K: usize>(seed: u32, high: Option<usize>, settings: Settings) ->
     HcSr04Ring::new(ring.unwrap(), pins, NoopDelay, settings)
 }
 
-/// Readings by kind of each sensor in 20 s. The robot drives towards a wall for each sensor, at a speed that the driver
-/// knows if `told`; each wake-up is late by up to `late_us`.
+/// Counts each sensor's readings by kind in 20 s. The robot drives towards a wall for each sensor; with `told` the
+/// driver knows the speed. Each wake-up is late by up to `late_us`.
 fn walls<const K: usize>(
     mut driver: Driver<K>,
     late_us: u32,
@@ -83,7 +83,7 @@ fn walls<const K: usize>(
             match event {
                 RingEvent::Fire { sensor, .. } => {
                     let rises = now + Micros::new(450);
-                    // It drives up to its walls and away from them, each for a second.
+                    // The robot drives towards its walls for a second, then away from them for a second.
                     let ms = now.as_micros() / 1_000 % 2_000;
                     let nearer_us = speed_mm_s * ms.min(2_000 - ms) * 2 / 343;
                     let width = 20_000 - 1_000 * u32::from(sensor % 8) - nearer_us + below(30);

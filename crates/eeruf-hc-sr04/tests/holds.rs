@@ -1,5 +1,5 @@
-//! Lines that stay high: a stuck line is never free space, and a measurement counts once, however long a module that
-//! hears nothing holds its line.
+//! Lines that stay high: a stuck line is never free space, and a measurement counts once, however long a module without
+//! an echo holds its line.
 
 #[path = "shared/pins.rs"]
 mod pins;
@@ -94,7 +94,7 @@ fn run<P: Plan, J: Judge, const H: usize>(
     said
 }
 
-/// The rings: one with a table, and flow rings of a robot that stands and of one that moves.
+/// The rings: one with a table, and flow rings of a stationary and of a moving robot.
 fn each(pulse_us: u32, sticks: Option<Instant>, seed: u32) -> [(&'static str, Vec<Said>); 3] {
     let table = || Ring::new(&PAPER_12, RingConfig::new().with_window(Micros::from_millis(40)), BEGIN).unwrap();
     let flow = || {
@@ -127,7 +127,7 @@ fn line_that_sticks_before_an_obstacle_is_never_clear() {
     }
 }
 
-// A module's own time-out ends just after the window of a ring by flow, a clone's much later.
+// A module's own time-out ends just after the window of a flow ring, a clone's much later.
 #[test]
 fn module_that_hears_nothing_is_clear_after_its_second_silence() {
     for hold_us in [38_000, 66_000, 130_000, 165_000, 200_000] {
@@ -141,7 +141,7 @@ fn module_that_hears_nothing_is_clear_after_its_second_silence() {
             let refire = said[5].0.since(said[4].0).as_micros().max(140_000);
             let waited = said[first].0.since(BEGIN).as_micros();
             assert!(waited <= 2 * hold_us + 3 * refire, "{hold_us} us, {ring}: {waited}");
-            // One measurement counts once; a robot that moves takes the first.
+            // One measurement counts once; a moving robot takes the first.
             assert!(ring == "flow, moving" || waited > 2 * hold_us, "{hold_us} us, {ring}: {waited}");
             assert!(hold_us > 40_000 || first <= 2, "{hold_us} us, {ring}: {first}");
         }

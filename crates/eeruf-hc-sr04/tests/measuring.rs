@@ -1,5 +1,5 @@
-//! Rings of four modules that measure by themselves, in simulated time: an SRF08 on I2C, a US-100 on a serial line, an
-//! MB1010 by pulse width. Each fake follows its data sheet, and has faults.
+//! Rings of four modules that measure by themselves, in simulated time: SRF08 on I2C, US-100 on a serial line, MB1010
+//! by pulse width. Each fake follows its data sheet and can have faults.
 
 #[path = "shared/four.rs"]
 mod four;
@@ -16,7 +16,7 @@ use embedded_hal::i2c::{ErrorKind, NoAcknowledgeSource, Operation};
 use embedded_hal_mock::eh1::delay::NoopDelay;
 use four::{BEGIN, K, ring};
 
-/// The space before a module.
+/// The space in front of a module.
 #[derive(Clone, Copy, Debug, PartialEq)]
 enum Space {
     /// A wall, whose echo takes this many microseconds.
@@ -42,7 +42,7 @@ enum Trouble {
     Late,
     /// The result comes twice.
     Twice,
-    /// The start is not received: only remains of an earlier firing are there.
+    /// The start is not received: only an earlier firing's result is there.
     Ignored,
     /// The data line is shorted to ground.
     Shorted,
@@ -134,7 +134,7 @@ impl embedded_hal::i2c::I2c for I2cFake {
             return Err(NACK);
         }
         if world.now < self.ranges_until {
-            // Some hosts report that nothing acknowledges, others read a bus that nobody drives.
+            // Some hosts report a missing acknowledgement, others read an undriven bus.
             bytes.fill(0xFF);
             return if self.sensor % 2 == 0 { Err(NACK) } else { Ok(()) };
         }
@@ -144,7 +144,7 @@ impl embedded_hal::i2c::I2c for I2cFake {
         match self.trouble {
             Trouble::Bus => return Err(ErrorKind::ArbitrationLoss),
             Trouble::Blip if self.reads < 3 => return Err(ErrorKind::Bus),
-            // It stops driving the bus within the read.
+            // The module stops driving the bus during the read.
             Trouble::Truncated => bytes[2..].fill(0xFF),
             Trouble::Garbled => bytes[0] = 0xFF,
             _ => {}
@@ -185,7 +185,7 @@ impl embedded_io::Write for SerialFake {
         assert_eq!(bytes, [0x55]);
         let mut world = self.world.borrow_mut();
         let (echo, trouble) = world.start(self.sensor);
-        // Millimetres at 343.2 m/s; where it hears nothing, a distance beyond its range, once it has listened.
+        // Millimetres at 343.2 m/s; without an echo, a distance beyond its range after the time to listen.
         let mm = echo.map_or(5_500, |us| (u64::from(us) * 343_200 + 1_000_000) / 2_000_000) as u16;
         let [high, low] = mm.to_be_bytes();
         let mut at = world.now + BYTE_US + u64::from(echo.unwrap_or(33_000)) + 2_000;
@@ -214,7 +214,7 @@ impl embedded_io::Write for SerialFake {
     }
 }
 
-/// The RX pin of an MB1010, whose PW pin a capture unit watches.
+/// The RX pin of an MB1010; a capture unit watches its PW pin.
 struct RxFake {
     world: Shared,
     sensor: u8,
@@ -341,7 +341,7 @@ fn run<M: Fake>(periods: u32, script: &Script, late: u32) -> ([Vec<Reading>; K],
 }
 
 /// Checks each sensor's readings against the script: only the wall is accepted, only reported free space is clear, and
-/// at least 98 % of the results of two good firings in a row are accepted or clear.
+/// after two good firings in a row at least 98 % of the results are accepted or clear.
 fn check(readings: &[Vec<Reading>; K], script: &Script) {
     for (sensor, readings) in readings.iter().enumerate() {
         let (mut right, mut all) = (0, 0);
@@ -411,7 +411,7 @@ fn holds<M: Fake>() {
     assert!(readings.iter().all(|readings| readings.len() >= 998));
 
     for trouble in Trouble::ALL {
-        // For ever, after ten good firings; two sensors before walls, two before nothing.
+        // After ten good firings the trouble lasts for ever; two sensors face walls, two face free space.
         let script: Script = Rc::new(move |sensor, firing| {
             let space = [Space::Wall(12_000), Space::Free][usize::from(sensor % 2)];
             (space, if firing < 10 { Trouble::None } else { trouble })

@@ -1,4 +1,4 @@
-//! Modules that measure by themselves, one call at a time, and their ring with modules that answer by a script.
+//! Drivers of modules that measure by themselves, one call at a time; and their ring, with scripted modules.
 
 #[path = "shared/four.rs"]
 mod four;
@@ -51,7 +51,7 @@ fn srf08_reports_echo_nothing_and_faults() {
     let failed = |kind| srf08(&[read([0; 4]).with_error(kind)], &[ms(65)]);
     assert_eq!(failed(nack), Err(Fault::NoAnswer));
     assert_eq!(failed(ErrorKind::ArbitrationLoss), Err(Fault::Bus));
-    // Not asked while it ranges, but once.
+    // While it ranges it is asked only once.
     assert_eq!(srf08(std::slice::from_ref(&busy), &[ms(2), ms(33), ms(64)]), Ok(Measured::NotYet(ms(65))));
     // An earlier result is in its registers.
     assert_eq!(srf08(&[read([10, 0x80, 0x2E, 0xE0])], &[ms(2), ms(65), ms(66)]), Err(Fault::NoAnswer));
@@ -106,7 +106,7 @@ impl embedded_io::Write for Line {
     }
 }
 
-/// The result of a US-100 that sends these distances, each in one piece, read at these times.
+/// The result of a US-100 that sends these distances at these times, each in one piece.
 fn us100(answers: &[(Micros, u16)]) -> Result<Measured, Fault> {
     let line = Line::default();
     let mut module = Us100::new(line.clone());
@@ -135,7 +135,7 @@ fn us100_reports_echo_nothing_and_faults() {
     assert!(matches!(module.result(ms(20)), Ok(Measured::NotYet(_))));
     assert_eq!(module.result(ms(100)), Err(Fault::Bus));
 
-    // 1 m/s slower, and what is as far takes longer.
+    // With sound 1 m/s slower, the same distance takes longer.
     let mut module = Us100::new(Line::holding(&[Ok(6), Ok(180)])).with_speed(SpeedOfSound::from_mm_per_s(342_200));
     assert_eq!(module.result(ms(100)), Ok(Measured::Echo(Micros::new(10_029))));
 }
@@ -146,7 +146,7 @@ fn us100_start_discards_all_that_its_line_holds() {
     let mut module = Us100::new(Line::holding(&old));
     module.start().unwrap();
     assert_eq!(module.result(ms(100)), Err(Fault::NoAnswer));
-    // One that never ends is no line of a US-100.
+    // An endless answer does not come from a US-100.
     assert_eq!(Us100::new(Line::holding(&[Ok(1); 40])).start(), Err(Fault::Invalid));
     assert_eq!(Us100::new(Line::holding(&[NOISE; 40])).start(), Err(Fault::Bus));
 }
@@ -238,7 +238,7 @@ fn last<M: Measures>(ring: &mut ScriptedRing<M>) -> [ReadingKind; K] {
 
 #[test]
 fn unlike_modules_share_a_ring() {
-    // An echo of beyond the window is none within it.
+    // An echo beyond the window counts as silence within it.
     let answers = [Ok(Measured::Echo(ms(9))), Ok(Measured::Echo(ms(40))), Ok(Measured::Nothing), Err(Fault::NoAnswer)];
     let [mut near, mut far, mut none, mut dead] = answers.map(Scripted::new);
     let modules: [&mut dyn Measures; K] = [&mut near, &mut far, &mut none, &mut dead];
@@ -267,7 +267,7 @@ fn health_follows_the_last_firing() {
     assert_eq!(last(&mut ring), [ReadingKind::Clear; K]);
     assert_eq!(health(&ring), [Health::Well; K]);
 
-    // It never gets anywhere, and the ring does.
+    // A module that never finishes does not stop the ring.
     (0..4).for_each(|x| *ring.module_mut(x).unwrap() = Scripted::new(Ok(Measured::NotYet(ms(0)))));
     assert_eq!(last(&mut ring), [ReadingKind::Unanswered; K]);
     assert_eq!(health(&ring), [Health::Missing; K]);
@@ -288,7 +288,7 @@ fn table_too_fast_for_a_module_is_refused() {
     assert_eq!(refused(Module { report_us: 99_000, ..SRF08 }), Some(ms(99)));
 }
 
-/// Runs a ring whose modules never answer until the last sensor fires; returns the ring and the time.
+/// Runs a ring until its last sensor fires, with modules that never answer; returns the ring and the time.
 fn after_the_last_fires() -> (ScriptedRing<Scripted>, Instant) {
     let modules = std::array::from_fn(|_| Scripted::new(Err(Fault::NoAnswer)));
     let (mut ring, mut now) = (MeasuringRing::new(ring(), modules).unwrap(), BEGIN);
@@ -318,7 +318,7 @@ fn module_is_asked_no_longer_than_it_may_take() {
     let (mut ring, now) = after_the_last_fires();
     assert_eq!(asked(&mut ring, now + ms(10_000), 50), 1, "once, after a loop that came late");
 
-    // A clock that steps back makes the ring forget its firings. When it is right again the ring is paused.
+    // A clock that steps back makes the ring forget its firings. When the clock is right again the ring is paused.
     let (mut ring, now) = after_the_last_fires();
     asked(&mut ring, Instant::from_micros(now.as_micros().wrapping_sub(5_000_000)), 1);
     ring.pause();
@@ -347,7 +347,7 @@ fn due_firing_waits_for_no_answer() {
     assert!(fired > 500, "{fired} by {now:?}");
 }
 
-// Whatever is done to a ring, and however its clock jumps: a dead module is never clear, nor is a wall.
+// Neither operations nor jumps of the clock make a dead module or a wall clear.
 #[test]
 fn operations_and_clock_jumps_make_nothing_clear() {
     let answers = [Ok(Measured::Echo(ms(9))), Err(Fault::NoAnswer), Err(Fault::Bus)];

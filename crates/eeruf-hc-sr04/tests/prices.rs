@@ -1,4 +1,4 @@
-//! The cost of rejected readings for healthy modules, in rooms where they hear each other and in the open.
+//! The share of readings that healthy modules lose, in rooms where they hear each other and in the open.
 
 mod shared {
     pub(crate) mod pins;
@@ -41,8 +41,8 @@ impl Lines for High {
     fn trigger(&mut self, _sensor: u8) {}
 }
 
-/// Numbers of firings with and without a wall, and of those judged correctly; and the number of firings after which the
-/// last sensor was first clear.
+/// Numbers of firings with and without a wall, and of those judged correctly; and the number of firings until every
+/// sensor had been clear.
 #[derive(Default)]
 struct Seen {
     walls: [u32; 2],
@@ -50,8 +50,8 @@ struct Seen {
     first_clear: u32,
 }
 
-/// Runs a ring in a room for ten seconds: three of five sensors have a wall, and each hears one of five others. In the
-/// open there is nothing. A pulse ends with the first sound, or after `holds`.
+/// Runs a ring in a room for ten seconds: three in five sensors have a wall, and each hears one of five others. In the
+/// open there is no echo. A pulse ends with the first sound, or after `holds`.
 fn room<P: Plan, J: Judge, const H: usize>(
     ring: Ring<P, J, K, 1, H>,
     seed: u64,
@@ -68,7 +68,7 @@ fn room<P: Plan, J: Judge, const H: usize>(
     let pins =
         std::array::from_fn(|x| Pins { trigger: Pin(lines.clone(), x as u8), echo: Pin(lines.clone(), x as u8) });
     let mut driver = HcSr04Ring::new(ring, pins, NoopDelay, Settings::default()).unwrap();
-    // When each listens and until when; how often it has fired, and when its line fell for want of an echo.
+    // For each sensor: from when and until when it listens, its firings, and when its line fell without an echo.
     let (mut now, mut until, mut fired, mut clear) = (0_u64, [(0, 0); K], [0_u32; K], [None; K]);
     let instant = |at: u64| Instant::from_micros(at as u32);
     let mut edges: Vec<(u64, u8, bool)> = vec![];
@@ -88,7 +88,7 @@ fn room<P: Plan, J: Judge, const H: usize>(
                     let x = usize::from(sensor);
                     fired[x] += 1;
                     if lines.borrow().is_high(sensor) {
-                        // Its module listens still, and takes no trigger.
+                        // The module still listens and ignores the trigger.
                         continue;
                     }
                     let falls = now + 450 + walls[x].map_or(holds, |us| us + dice.below(30));
@@ -145,8 +145,8 @@ fn shares(rooms: u64, is_open: bool, holds: u64, flow: bool) -> [f64; 3] {
     shares
 }
 
-// Where silence was believed without a witness, two phases were right in 91.0 % before walls and in 59.2 % before none,
-// in the open in 99.0 % of ten seconds, from the second firing on.
+// When silence was believed without a witness, two phases were right in 91.0 % of firings at walls and 59.2 % at none,
+// and in the open in 99.0 % of ten seconds, from the second firing on.
 #[test]
 fn healthy_modules_are_believed_as_often_as_before() {
     for flow in [false, true] {

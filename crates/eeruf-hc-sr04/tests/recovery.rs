@@ -121,7 +121,7 @@ fn latched_line_recovers_when_pulled_low() {
     let (kinds, states, health, pulled) = run(1, true, false);
     assert_eq!((health, pulled), (Health::Well, 1));
     assert!(count(&kinds, ReadingKind::Accepted) > 90, "{kinds:?}");
-    // Held for up to 250 ms after its trigger it listens; then it is stuck, and no free space until an echo counts.
+    // Held for up to 250 ms after its trigger it listens; then it is stuck, not free space until an echo counts.
     let stuck = kinds.iter().position(|&kind| kind == ReadingKind::Stuck).unwrap();
     assert!(stuck <= 3, "{kinds:?}");
     assert!(!kinds[stuck..].contains(&ReadingKind::Clear), "{kinds:?}");

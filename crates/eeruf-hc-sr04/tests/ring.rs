@@ -1,4 +1,4 @@
-//! The driver against faults of real wiring: each fault affects only its own sensor, and is named.
+//! Faults of real wiring: each affects only its own sensor, and the driver names it.
 
 use eeruf_core::{
     Edge, EdgeQueue, Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, Schedule, ScheduledRing, Tally,
@@ -17,14 +17,14 @@ fn schedule(period_ms: u32) -> Schedule<K> {
 
 const CONFIG: RingConfig = RingConfig::new().with_t_delta(Micros::new(500)).with_window(Micros::from_millis(40));
 
-/// Response of a sensor to a trigger: edges as (time in us, high).
+/// Response of a sensor to its n-th trigger: edges as (time in us, high).
 type Line<'a> = &'a dyn Fn(u32) -> Vec<(u32, bool)>;
 
 fn echo(us: u32) -> impl Fn(u32) -> Vec<(u32, bool)> {
     move |_| vec![(450, true), (450 + us, false)]
 }
 
-/// Runs several periods; `high` says if the line of sensor 1 is high when it is to be triggered.
+/// Runs several periods; with `high` the line of sensor 1 is high when the sensor is to be triggered.
 fn run(periods: u32, high: bool, lines: [Line<'_>; K]) -> ([Tally<u32>; K], [Health; K]) {
     let schedule = schedule(100);
     let pulses =
@@ -69,14 +69,14 @@ fn run(periods: u32, high: bool, lines: [Line<'_>; K]) -> ([Tally<u32>; K], [Hea
     }
     let health = std::array::from_fn(|x| driver.health(x as u8));
     drop(driver);
-    // Triggered as often as fired, and never when stuck.
+    // Sensors are triggered as often as fired, and never when stuck.
     for mut mock in mocks {
         mock.done();
     }
     (tallies, health)
 }
 
-/// Checks that the other sensors read as without a fault.
+/// Checks that the other sensors read as if there were no fault.
 fn others_are_well(tallies: &[Tally<u32>; K], health: &[Health; K]) {
     for x in [0, 2] {
         assert_eq!(
@@ -86,7 +86,7 @@ fn others_are_well(tallies: &[Tally<u32>; K], health: &[Health; K]) {
     }
 }
 
-// The width of the pulse is the echo time and two that agree are accepted.
+// The width of the pulse is the echo time, and two that agree are accepted.
 #[test]
 fn pulse_width_is_the_echo_time_and_two_are_accepted() {
     let (tallies, health) = run(10, false, [&echo(5_000), &echo(12_000), &echo(20_000)]);
@@ -131,7 +131,7 @@ fn no_line_that_shows_nothing_is_told_as_free_space() {
         ("a lost fall", &|_| vec![(450, true)], ReadingKind::NoEcho),
         ("a glitch", &|_| vec![(3_000, true), (3_005, false)], ReadingKind::Unanswered),
         ("glitches", &|_| vec![(300, true), (360, false), (9_000, true), (9_080, false)], ReadingKind::Unanswered),
-        // The line answers in every other firing only: nothing is confirmed by one.
+        // The line answers only every other firing, and one answer confirms nothing.
         (
             "a loose wire",
             &|n| if n % 2 == 0 { vec![] } else { vec![(450, true), (38_450, false)] },
@@ -157,7 +157,7 @@ fn chattering_line_counts_and_is_named() {
     assert_eq!((tallies[1].of(ReadingKind::Accepted), health[1]), (9, Health::Chatters));
 }
 
-// A line whose edges get lost is named and no width is made of what is left.
+// A line whose edges get lost is named, and the remaining edges make no pulse.
 #[test]
 fn line_that_loses_edges_is_named() {
     let rises_lost = |_| vec![(12_450, false)];
@@ -167,7 +167,7 @@ fn line_that_loses_edges_is_named() {
     let falls_lost = |_| vec![(450, true)];
     let (tallies, health) = run(10, false, [&echo(5_000), &falls_lost, &echo(20_000)]);
     others_are_well(&tallies, &health);
-    // Each may have had an echo.
+    // Each firing may have had an echo.
     assert_eq!((tallies[1].of(ReadingKind::NoEcho), health[1]), (10, Health::LosesEdges));
 }
 
@@ -221,7 +221,7 @@ fn timely_echo_is_heard_however_long_an_event_took() {
     assert_eq!((reading.sensor, reading.t_echo), (0, Some(Micros::from_millis(6))));
     let third = std::iter::from_fn(|| driver.poll(ms(94))).next();
     assert_eq!(fired(third), Some(2));
-    // However it is polled.
+    // The same holds for the other way of polling.
     edges.push(Edge { sensor: 2, high: true, at: ms(95) });
     edges.push(Edge { sensor: 2, high: false, at: ms(103) });
     let expecting = std::iter::from_fn(|| driver.poll_expecting(ms(140), |_| 0));

@@ -1,5 +1,5 @@
-//! A loop that samples its lines and has other work: an edge is known to lie between two looks, and a distance that is
-//! wrong because of late looks is not accepted.
+//! A loop that samples its lines and has other work: edges are known to lie between two looks, and distances that late
+//! looks make wrong are not accepted.
 
 #[path = "shared/pins.rs"]
 mod pins;
@@ -50,8 +50,8 @@ fn driver(lines: &Rc<RefCell<Lines>>, now: Instant) -> HcSr04Ring<FlowRing<K>, P
     HcSr04Ring::new(ring, pins, NoopDelay, Settings::default()).unwrap()
 }
 
-/// Runs for 20 s with other work of `work_us` in each `every_us`. With `as_seen` edges are reported with the time of
-/// the look. Returns the numbers of accepted readings that are right, and that are wrong by 5 cm or more.
+/// Runs for 20 s with `work_us` of other work every `every_us`. With `as_seen`, edges are reported with the time of the
+/// look. Returns the numbers of accepted readings that are right, and wrong by 5 cm or more.
 fn run([work_us, every_us]: [u32; 2], as_seen: bool) -> (u32, u32) {
     let lines = Rc::new(RefCell::new(Lines::default()));
     let mut driver = driver(&lines, Instant::from_micros(0));

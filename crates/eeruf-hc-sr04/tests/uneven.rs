@@ -1,4 +1,4 @@
-//! Two modules of different range whose echo lines come in through one multiplexer.
+//! Two modules of different range whose echo lines share one multiplexer.
 
 use core::convert::Infallible;
 
@@ -65,7 +65,7 @@ fn driver(min_retrigger_ms: u32) -> Result<Driver, SetupError> {
     HcSr04Ring::new(ring, [0, 1].map(|_| Pin).map(|trigger| Pins { trigger, echo: Pin }), NoopDelay, settings)
 }
 
-/// The kinds of 20 readings of each module, with a wall this many microseconds away.
+/// The kinds of at least 20 readings of each module, with a wall this many microseconds away.
 fn readings(echo_us: [u32; 2]) -> [Vec<ReadingKind>; 2] {
     let mut driver = driver(40).unwrap();
     let mut kinds = [vec![], vec![]];
@@ -102,7 +102,7 @@ fn each_module_on_a_shared_line_is_heard_as_far_as_it_sees() {
     use ReadingKind::Accepted;
     let [far, near] = readings([25_000, 12_000]);
     assert!(far[2..].iter().chain(&near[2..]).all(|&kind| kind == Accepted), "{far:?} {near:?}");
-    // Where the far one still hears, the near one has stopped listening.
+    // When the far one still hears, the near one has stopped listening.
     let [far, near] = readings([25_000, 14_000]);
     assert!(far[2..].iter().all(|&kind| kind == Accepted), "{far:?}");
     assert!(near.iter().all(|&kind| kind != Accepted), "{near:?}");

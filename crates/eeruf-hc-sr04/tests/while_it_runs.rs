@@ -53,7 +53,7 @@ impl InputPin for NoPin {
     }
 }
 
-// An adaptation changes the schedule of the driver and stays where that is refused.
+// An adaptation changes the schedule of the driver, and keeps its rung if that is refused.
 #[test]
 fn adaptation_changes_the_drivers_schedule() {
     let requirements = Requirements::new(Micros::new(500));
@@ -78,7 +78,7 @@ fn adaptation_changes_the_drivers_schedule() {
         };
         assert_eq!(change()[15], Ok(true));
         if !allowed {
-            // Down again, to the one that is too fast.
+            // Down again, to the rung that is too fast.
             let mut calm = stats;
             calm.tally = Tally::default();
             calm.tally.count(ReadingKind::Accepted);
@@ -110,7 +110,7 @@ fn the_width_of_a_pulse_counts_wherever_the_trigger_really_came() {
     let Some(RingEvent::Fire { sensor, .. }) = driver.poll(due) else { panic!("fires") };
     let us = |us| due + Micros::new(us);
     driver.fired(sensor, us(300)).unwrap();
-    // Within the deaf time after the true trigger, and the pulse.
+    // A glitch within the deaf time after the true trigger, then the pulse.
     driver.edge(Edge { sensor, high: true, at: us(390) }).unwrap();
     driver.edge(Edge { sensor, high: false, at: us(395) }).unwrap();
     driver.edge(Edge { sensor, high: true, at: us(750) }).unwrap();

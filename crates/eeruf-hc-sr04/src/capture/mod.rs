@@ -1,12 +1,12 @@
 //! Modules on hardware that triggers them and captures their edges: [`Captures`], and [`CaptureRing`], a ring of them.
 //!
-//! A late loop fires late and stamps edges late; a peripheral does neither. The ring gives it each firing ahead of
+//! A late loop fires late and stamps edges late; a peripheral does neither. The ring hands it each firing ahead of
 //! time, and later sorts its reports by time.
 //!
 //! | decoder | peripheral | its reports |
 //! |---|---|---|
 //! | [`PioLine`] | PIO of an RP2040 with [`PIO_PROGRAM`], which triggers too | words of a FIFO |
-//! | [`RmtLine`] | receiver of an ESP32's RMT | levels and how long each lasted, once the line is idle |
+//! | [`RmtLine`] | receiver of an ESP32's RMT | levels with their durations, once the line is idle |
 //! | [`TimerLine`] | input capture of an STM32's timer | registers of 16 bits, and flags |
 //!
 //! All reports become time-stamped edges, so that the driver applies the same rules as to interrupts: gaps, spikes,
@@ -35,8 +35,8 @@ pub struct LineEdge {
 
 /// Hardware that triggers the modules of a ring at given instants and captures the edges of their lines.
 pub trait Captures {
-    /// Schedules the trigger of a sensor at an instant or as soon after it as possible, and returns its time. `None`
-    /// while the hardware is busy with the sensor; the ring then asks again.
+    /// Schedules the trigger of a sensor at an instant or as soon after it as possible, and returns its time. Returns
+    /// `None` while the hardware is busy with the sensor; the ring then tries again.
     fn fire(&mut self, sensor: u8, at: Instant, now: Instant) -> Option<Instant>;
 
     /// The next edge of a sensor's line, the oldest first; `None` until the hardware reports one.

@@ -40,13 +40,13 @@ pub const PIO_HZ: u32 = 2_000_000;
 /// Program of a PIO state machine that triggers a module and reports the edges of its line. It wraps from its last
 /// instruction to its first.
 ///
-/// It runs at [`PIO_HZ`] with the trigger as its only `set` pin, the echo line as its first `in` pin and its `jmp` pin,
-/// `out` shifting to the right, `in` to the left, without autopull and autopush.
+/// Run it at [`PIO_HZ`], with the trigger as the only `set` pin and the echo line as first `in` pin and `jmp` pin;
+/// `out` shifts right, `in` shifts left, and autopull and autopush are off.
 ///
-/// A firing takes the two words of [`PioLine::fire`]: microseconds to wait; then in the low 24 bits microseconds to
-/// listen, above them a tag. It reports a word for each edge and one when it stops listening: the tag, 23 bits with the
-/// microseconds that were left (all ones at the end), and in the lowest bit the level. A full FIFO loses words and
-/// never delays it.
+/// A firing takes the two words of [`PioLine::fire`]: the microseconds to wait; then a tag, with the microseconds to
+/// listen in the low 24 bits. The program reports a word for each edge and one when it stops listening: the tag, 23
+/// bits with the microseconds left (all ones at the end), and the level in the lowest bit. A full FIFO drops words; it
+/// never delays the program.
 pub const PIO_PROGRAM: [u16; 26] = {
     const LOW: u16 = 8;
     const ROSE: u16 = 11;
@@ -90,7 +90,7 @@ pub const PIO_PROGRAM: [u16; 26] = {
 
 /// Time from the words of a firing to its trigger, in addition to the wait that they ask for.
 const STARTS_AFTER: u32 = 3;
-/// Time that a caller has to write the words, a choice.
+/// Time allowed for a caller to write the words, an arbitrary choice.
 const HANDING_OVER: u32 = 5;
 /// Time from the start of the 10 us trigger to the start of the count.
 const COUNTS_AFTER: Micros = Micros::new(11);
@@ -100,8 +100,8 @@ const ENDED: u32 = 0x7F_FFFF;
 /// A module on a PIO state machine that runs [`PIO_PROGRAM`]: it makes the words that fire it, and decodes the words
 /// that report edges.
 ///
-/// Widths are exact to 3 us, since the program counts microseconds and stops counting while it reports an edge. Late
-/// words are as good as punctual ones; words of an earlier firing, recognised by the tag, are dropped.
+/// Widths are exact to 3 us, since the program counts microseconds and stops counting while it reports an edge. Words
+/// may be decoded late; words of an earlier firing, recognised by the tag, are dropped.
 #[derive(Clone, Copy, Debug)]
 pub struct PioLine {
     fired: Instant,
@@ -111,17 +111,17 @@ pub struct PioLine {
 }
 
 impl PioLine {
-    /// A module whose line is watched for this long after its trigger, at most 8 s. It should be the window plus half a
-    /// millisecond, and at least 11 ms less than the time until it fires again.
+    /// A module whose line is watched for `listens` after its trigger, at most 8 s. Pass the window plus half a
+    /// millisecond, but at least 11 ms less than the time until the module fires again.
     pub const fn new(listens: Micros) -> Self {
         let listens = if listens.as_micros() < ENDED { listens } else { Micros::new(ENDED - 1) };
         Self { fired: Instant::from_micros(0), listens, tag: 0, is_busy: false }
     }
 
     /// The words that trigger the module at an instant, or now if that is past, and the time of the trigger. Write them
-    /// at once. `None` while the state machine listens, since it would begin to wait only afterwards.
+    /// at once. Returns `None` while the state machine listens, since it would start to wait only afterwards.
     pub fn fire(&mut self, at: Instant, now: Instant) -> Option<([u32; 2], Instant)> {
-        // The word that ends a firing may have got lost.
+        // The word that ends a firing may have been lost.
         let listened = self.listens.saturating_add(Micros::from_millis(1));
         if self.is_busy && now.since(self.fired) < listened {
             return None;
@@ -134,8 +134,7 @@ impl PioLine {
         Some(([waits, u32::from(self.tag) << 24 | self.listens.as_micros()], at))
     }
 
-    /// The edge that a word of the state machine reports; `None` for the end of a firing, and for remains of an earlier
-    /// one.
+    /// The edge that a word of the state machine reports; `None` for the end of a firing or a word of an earlier one.
     pub fn edge(&mut self, word: u32) -> Option<LineEdge> {
         let (left, tag) = (word >> 1 & ENDED, word >> 24);
         if tag != u32::from(self.tag) {

@@ -7,15 +7,15 @@ use crate::error::SetupError;
 use crate::ring::HcSr04Ring;
 use crate::settings::Settings;
 
-/// Time by which firings are handed to the hardware in advance, a choice: a loop may be late by as much, less the time
-/// for which the hardware is busy with a sensor.
+/// Time by which firings are handed to the hardware in advance, an arbitrary choice: a loop may be late by this, minus
+/// the time for which the hardware is busy with a sensor.
 const AHEAD: Micros = Micros::from_millis(10);
 
 /// A ring of modules on hardware that triggers them and captures their edges, such as PIO, RMT or a timer.
 ///
-/// The loop may come late by some milliseconds: firings of a table are as exact as the hardware, and what it reports is
-/// judged as if the loop had been there. A plan that decides on the next firing by what was heard until then, as flow
-/// does, fires when the loop comes; the hardware says when that was.
+/// The loop may be a few milliseconds late: firings of a table are as exact as the hardware, and its reports are judged
+/// as if the loop had been on time. A plan whose next firing depends on earlier echoes, such as flow, fires when the
+/// loop polls; the hardware reports the exact instant.
 #[derive(Debug)]
 pub struct CaptureRing<R, C, const K: usize> {
     ring: HcSr04Ring<R, (), (), (), K>,
@@ -56,14 +56,14 @@ impl<P: Plan, J: Judge, C: Captures, const K: usize, const H: usize> CaptureRing
                 *waiting = waiting.take().or_else(|| self.hardware.edge(sensor, now));
                 let Some(LineEdge { high, at }) = waiting.filter(|edge| until.has_reached(edge.at)) else { break };
                 *waiting = None;
-                // The ring has it, or ignores what its hardware has beyond.
+                // Sensors that the ring does not have are ignored.
                 _ = self.ring.edge(Edge { sensor, high, at });
             }
         }
         let event = self.ring.poll_triggered(until)?;
         let RingEvent::Fire { sensor, .. } = event else { return Some(event) };
         if decides_late {
-            // Where the hardware is busy nothing is heard, which the reading says.
+            // If the hardware is busy nothing is heard, and the reading says so.
             _ = self.hardware.fire(sensor, now, now).map(|at| self.ring.fired(sensor, at));
         } else {
             self.armed.rotate_left(1.min(K));

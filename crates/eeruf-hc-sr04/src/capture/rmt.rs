@@ -4,14 +4,14 @@ use eeruf_core::{Instant, Micros};
 
 use super::LineEdge;
 
-/// Time from the trigger to the rise of the line. The receiver does not report it, as it begins with the first edge.
+/// Time from the trigger to the rise of the line. The receiver does not report it, since it starts at the first edge.
 const RISES_AFTER: Micros = Micros::new(450);
 
 /// A module on a receiver of an ESP32's RMT, which holds up to `N` symbols; it turns them into edges.
 ///
 /// A symbol has two levels, each with its duration; 0 marks the last level, after which the line did not change for the
 /// idle threshold. Set that threshold above the longest echo and below the time for which a healthy module holds its
-/// line: a line that is high for as long means free space. Start the receiver with each trigger. The time of the first
+/// line: a line that stays high that long means free space. Start the receiver with each trigger. The time of the first
 /// edge is unknown and set to 450 us after the trigger, so exchanged wires go unseen.
 ///
 /// ```
@@ -28,7 +28,7 @@ pub struct RmtLine<const N: usize> {
     tick: Micros,
     idle: Micros,
     symbols: [u32; N],
-    /// Number of levels, and of those already decoded.
+    /// Number of levels, and number already decoded.
     levels: usize,
     next: usize,
     /// Time when the next level begins.
@@ -44,8 +44,8 @@ impl<const N: usize> RmtLine<N> {
         Self { tick, idle, symbols: [0; N], levels: 0, next: 0, at: Instant::from_micros(0), was_high: false }
     }
 
-    /// Stores the symbols received for the firing at `fired`; take all edges of an earlier reception out first. Symbols
-    /// without room are lost.
+    /// Stores the symbols received for the firing at `fired`; take out all edges of an earlier reception first. Symbols
+    /// beyond `N` are lost.
     pub fn received(&mut self, fired: Instant, symbols: &[u32]) {
         self.levels = 2 * symbols.len().min(N);
         (self.next, self.at, self.was_high) = (0, fired + RISES_AFTER, false);

@@ -12,17 +12,17 @@ const WRAPS_AFTER: Micros = Micros::new(1 << 16);
 pub struct Captured {
     /// Counter at the last rise since the registers were last read, if there was one.
     pub rise: Option<u16>,
-    /// Counter at the last fall since then, if there was one.
+    /// Counter at the last fall since the registers were last read, if there was one.
     pub fall: Option<u16>,
     /// True if a register was overwritten before it was read (`CCxOF`).
     pub is_over: bool,
 }
 
-/// A module whose line is captured by a 16-bit timer at 1 MHz, rises in one register and falls in another; it turns the
-/// registers into edges.
+/// A module whose line is captured by a 16-bit timer at 1 MHz, with rises in one register and falls in another. It
+/// turns the registers into edges.
 ///
-/// Read the registers at least every 65 ms. If they are read later, a register could be from before a wrap; after an
-/// overcapture an edge is missing. Both yield no edges at all, and silence without a rise is not free space.
+/// Read the registers at least every 65 ms. If they are read later, a value could be from before a wrap; after an
+/// overcapture an edge is missing. Either case yields no edges at all, and silence without a rise is not free space.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct TimerLine {
     /// Time when the registers were read last.
@@ -37,8 +37,8 @@ impl TimerLine {
         Self { read: None, edges: [None; 2] }
     }
 
-    /// Decodes registers that were read `now`, when the timer stood at `counter`. Take all [edges](Self::edge) of an
-    /// earlier reading out first.
+    /// Decodes registers that were read at `now`, when the timer stood at `counter`. Take out all [edges](Self::edge)
+    /// of an earlier reading first.
     pub fn captured(&mut self, registers: Captured, counter: u16, now: Instant) {
         let is_ambiguous = self.read.is_none_or(|read| now.since(read) >= WRAPS_AFTER);
         self.read = Some(now);

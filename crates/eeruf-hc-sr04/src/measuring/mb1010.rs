@@ -1,4 +1,4 @@
-//! [`Mb1010`]: a module that answers by the width of a pulse.
+//! [`Mb1010`]: a module that answers with the width of a pulse.
 
 use eeruf_core::Micros;
 use embedded_hal::delay::DelayNs;
@@ -8,8 +8,8 @@ use super::{Fault, Measured, Measures};
 use crate::modules::{MB1010, Module};
 use crate::settings::Settings;
 
-/// Interval between two checks for a pulse, a choice. A pulse that ends sooner after the start than its width belongs
-/// to an earlier start.
+/// Interval between two checks for a pulse, an arbitrary choice. A pulse that ends sooner after the start than its own
+/// width belongs to an earlier start.
 const LOOK_EVERY: Micros = Micros::from_millis(5);
 
 const SETTINGS: Settings = match Settings::of(&MB1010) {
@@ -22,15 +22,15 @@ const SETTINGS: Settings = match Settings::of(&MB1010) {
 ///
 /// RX high for 20 us starts a reading, and PW is high for 147 us per inch of range (LV-MaxSonar-EZ1 Data Sheet,
 /// `MaxBotix`), which is the echo time in air of 24 degrees. PW rises after the burst and falls with the echo, so its
-/// width is taken for the echo time; without an echo it is high for up to 37.5 ms ("LV-MaxSonar-EZ, timing"). The first
-/// reading after power is switched on takes 49 ms more, and goes unanswered. Nearer than 6 inches it reports 6 inches.
+/// width is taken as the echo time; without an echo it is high for up to 37.5 ms ("LV-MaxSonar-EZ, timing"). The first
+/// reading after power-up takes 49 ms longer and goes unanswered. Closer than 6 inches it reports 6 inches.
 #[derive(Debug)]
 pub struct Mb1010<T, D> {
     rx: T,
     delay: D,
     is_started: bool,
     pulse: Option<Micros>,
-    /// True if another pulse of the same start had another width.
+    /// True if two pulses of one start had different widths.
     differs: bool,
 }
 
@@ -63,7 +63,7 @@ impl<T: OutputPin, D: DelayNs> Measures for Mb1010<T, D> {
         (self.is_started, self.pulse, self.differs) = (false, None, false);
         let rose = self.rx.set_high();
         self.delay.delay_us(MB1010.trigger_us);
-        // Also after an error: while RX is high the module goes on ranging.
+        // Also after an error: while RX is high the module keeps ranging.
         let fell = self.rx.set_low();
         if rose.is_err() || fell.is_err() {
             return Err(Fault::Bus);
@@ -85,7 +85,7 @@ impl<T: OutputPin, D: DelayNs> Measures for Mb1010<T, D> {
             return Err(Fault::Invalid);
         }
         if width > since || width < SETTINGS.shortest || width > within {
-            // The pulse of this start may be still to come.
+            // The pulse of this start may still be to come.
             self.pulse = None;
             return Err(Fault::Invalid);
         }

@@ -2,7 +2,7 @@
 //!
 //! Such a module times the echo with its own controller and reports a value: over I2C, a serial line, or by the width
 //! of a pulse that the host's hardware captures. The ring starts each measurement when the plan says so, asks for the
-//! result when it can be there, and hands it to [`Ring::measured`](eeruf_core::Ring::measured).
+//! result as soon as it may be ready, and passes it to [`Ring::measured`](eeruf_core::Ring::measured).
 //!
 //! | driver | module | interface |
 //! |---|---|---|
@@ -10,10 +10,10 @@
 //! | [`Us100`] | US-100 | serial line, `embedded-io` |
 //! | [`Mb1010`] | `MaxBotix` MB1010 | pulse width, captured by the caller |
 //!
-//! Silence is no answer: a reading is [`Clear`](eeruf_core::ReadingKind::Clear) only after the module itself reported
-//! that nothing is in range, and [`Unanswered`](eeruf_core::ReadingKind::Unanswered) without a valid report. Each
-//! driver discards remains of an earlier measurement. It cannot recognise an answer that is late by a whole period if
-//! the present one is missing.
+//! Silence is not an answer: a reading is [`Clear`](eeruf_core::ReadingKind::Clear) only after the module itself
+//! reported that nothing is in range, and [`Unanswered`](eeruf_core::ReadingKind::Unanswered) without a valid report.
+//! Each driver discards what is left of an earlier measurement. It cannot recognise an answer that is a whole period
+//! late if the present one is missing.
 
 mod mb1010;
 mod ring;
@@ -33,7 +33,7 @@ pub use us100::Us100;
 
 /// A module that measures by itself: it is started, and asked for the result later.
 ///
-/// Neither function may wait for the measurement; a [`MeasuringRing`] has other modules to start meanwhile.
+/// Neither function may wait for the measurement; a [`MeasuringRing`] must start other modules meanwhile.
 pub trait Measures {
     /// The module's figures, such as its time to report and its rest.
     fn module(&self) -> &Module;
@@ -44,15 +44,15 @@ pub trait Measures {
     /// [`Fault`] if the module was not started.
     fn start(&mut self) -> Result<Micros, Fault>;
 
-    /// The result of the measurement that was started `since` ago. The ring calls it until there is a result or the
-    /// time is over.
+    /// Returns the result of the measurement that was started `since` ago. The ring calls this until there is a result
+    /// or time runs out.
     ///
     /// # Errors
-    /// [`Fault`] if there is no valid result. It is asked for again a little later.
+    /// [`Fault`] if there is no valid result. The ring asks again a little later.
     fn result(&mut self, since: Micros) -> Result<Measured, Fault>;
 
-    /// Longest time from the start to the result, after which the module counts as unanswered: from its figures plus an
-    /// eighth for its clock, a choice.
+    /// Longest time from the start to the result, after which the module counts as unanswered: its figures plus an
+    /// eighth for the error of its clock, an arbitrary choice.
     fn answers_within(&self) -> Micros {
         let module = self.module();
         let us = module.report_us.saturating_add(module.no_echo.hold_us());
@@ -89,7 +89,7 @@ pub enum Measured {
     Nothing,
 }
 
-/// The reason why there is no result. No fault says anything about the space before the module.
+/// The reason why there is no result. No fault says anything about the space in front of the module.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Fault {
     /// Silence: no byte, no pulse, or an address that is not acknowledged.

@@ -8,7 +8,7 @@ use crate::hands_on::hands_on;
 use crate::health::Health;
 use crate::settings::Settings;
 
-/// Delay before the module is asked again after a fault, a choice: the bus may have been disturbed.
+/// Delay before the module is asked again after a fault, in case of noise on the bus; an arbitrary choice.
 const RETRY: Micros = Micros::from_millis(1);
 
 /// A ring whose firings start modules that measure by themselves: a [`Ring`] of any plan and judge, and one module for
@@ -106,7 +106,7 @@ impl<P: Plan, J: Judge, M: Measures, const K: usize, const H: usize> MeasuringRi
             report_after = report_after.max(module.answers_within());
         }
         ring.set_report_after(report_after.min(min_refire))?;
-        // Silence is no free space.
+        // Silence is not free space.
         ring.set_silence(Silence::NeedsAnswer);
         Ok(Self { ring, modules, states: [State::NEW; K] })
     }
@@ -131,7 +131,7 @@ impl<P: Plan, J: Judge, M: Measures, const K: usize, const H: usize> MeasuringRi
         let event = self.ring.poll_expecting(now, expected_change_us)?;
         match event {
             RingEvent::Fire { sensor, .. } => self.start(sensor, now),
-            // A late one with an echo time follows a reading.
+            // A late reading with an echo time follows another reading.
             RingEvent::Reading(reading) if reading.kind != ReadingKind::Late || reading.t_echo.is_none() => {
                 if let Some(state) = self.states.get_mut(usize::from(reading.sensor)) {
                     state.end();
@@ -164,7 +164,7 @@ impl<P: Plan, J: Judge, M: Measures, const K: usize, const H: usize> MeasuringRi
         let (after, fault) = match module.result(since) {
             Ok(Measured::NotYet(after)) => (after.max(retry), state.fault),
             Err(fault) => (retry, Some(fault)),
-            // Beyond the window it has heard nothing within it.
+            // An echo beyond the window means silence within it.
             Ok(Measured::Echo(t_echo)) => {
                 let t_echo = Some(t_echo).filter(|&t_echo| t_echo <= self.ring.window_of(sensor));
                 return self.answer(sensor, t_echo);
@@ -173,7 +173,7 @@ impl<P: Plan, J: Judge, M: Measures, const K: usize, const H: usize> MeasuringRi
         };
         (state.step, state.fault) = (Step::Measures { started, ask: started + after }, fault);
         if since >= self.ring.report_after().max(self.ring.window_of(sensor)) {
-            // Its reading is due.
+            // The reading is due.
             state.end();
         }
     }
@@ -182,7 +182,7 @@ impl<P: Plan, J: Judge, M: Measures, const K: usize, const H: usize> MeasuringRi
         if let Some(state) = self.states.get_mut(usize::from(sensor)) {
             *state = State::NEW;
         }
-        // It is there: it has fired.
+        // The sensor exists: it has fired.
         _ = self.ring.measured(sensor, t_echo);
     }
 
@@ -196,7 +196,7 @@ impl<P: Plan, J: Judge, M: Measures, const K: usize, const H: usize> MeasuringRi
         asks.fold(self.ring.next_deadline(), |next, ask| if next.has_reached(ask) { ask } else { next })
     }
 
-    /// Health of a sensor at its last complete firing, judging by its answers: [`Health::PinError`] for an error of its
+    /// Health of a sensor at its last complete firing, judged by its answers: [`Health::PinError`] for an error of its
     /// bus, [`Health::LosesEdges`] for a truncated answer, [`Health::Chatters`] for an invalid one. A sensor that the
     /// ring does not have is [`Health::Missing`].
     pub fn health(&self, sensor: u8) -> Health {

@@ -11,20 +11,20 @@ use crate::modules::{Module, SRF08};
 const FIRST_REGISTER: u8 = 0;
 /// Command for ranging with the result in microseconds.
 const RANGE_IN_US: u8 = 0x52;
-/// Value read from a bus that no device drives, as while the module ranges.
+/// Value read from a bus that no device drives, for example while the module ranges.
 const UNDRIVEN: u8 = 0xFF;
-/// Delay from the start to the check that the module ranges: a choice, longer than a command takes at 100 kHz.
+/// Delay from the start to the check that the module ranges: arbitrary, but longer than a command takes at 100 kHz.
 const IS_RANGING: Micros = Micros::from_millis(2);
 
 /// A Devantech SRF08, or another module with its registers, on an I2C bus.
 ///
 /// It ranges for 65 ms, with the range register at its default, and does not respond meanwhile; register 2 then holds
 /// the time of the first echo, or 0 if there was none (SRF08 Technical Specification, Devantech). The driver reads it
-/// together with the revision; it refuses revision 0, a choice, as that is how a data line shorted to ground reads. If
-/// polled in the first half of the 65 ms, it checks once that the module ranges: if it responds, it was not started,
-/// and its registers hold an earlier result.
+/// together with the revision; it refuses revision 0 by choice, since a data line shorted to ground reads as 0. If
+/// polled in the first half of the 65 ms, the driver checks once that the module ranges: if the module responds, it was
+/// not started, and its registers hold an earlier result.
 ///
-/// Several modules share a bus by handles such as those of the crate `embedded-hal-bus`.
+/// Several modules can share a bus through handles such as those of the crate `embedded-hal-bus`.
 #[derive(Debug)]
 pub struct Srf08<B> {
     bus: B,
@@ -34,7 +34,7 @@ pub struct Srf08<B> {
 }
 
 impl<B: I2c> Srf08<B> {
-    /// The address as shipped, in 7 bits: the sheet writes 0xE0. Fifteen more follow.
+    /// The factory address, in 7 bits (0xE0 in the data sheet). Fifteen more can be set.
     pub const ADDRESS: u8 = 0x70;
 
     /// A module at this address of 7 bits, 0x70 to 0x7F.
@@ -80,7 +80,7 @@ impl<B: I2c> Measures for Srf08<B> {
             (UNDRIVEN, _) => Err(Fault::NoAnswer),
             (0, _) => Err(Fault::Bus),
             (_, 0) => Ok(Measured::Nothing),
-            // It had stopped listening.
+            // The module had stopped listening.
             (_, us) if u32::from(us) > SRF08.report_us => Err(Fault::Invalid),
             (_, us) => Ok(Measured::Echo(Micros::new(us.into()))),
         }

@@ -8,34 +8,34 @@ use crate::modules::{Module, US_100};
 
 /// The command that asks for a distance.
 const RANGE: u8 = 0x55;
-/// Largest number of bytes taken from a line at once, a choice: more cannot be an answer, and the loop has other work.
+/// Largest number of bytes taken from a line at once, an arbitrary choice: no answer has as many.
 const MOST_BYTES: usize = 32;
-/// Largest number of errors skipped when a line is cleared, a choice.
+/// Largest number of errors skipped when a line is cleared, an arbitrary choice.
 const MOST_ERRORS: usize = 8;
-/// Interval between two reads of the line, a choice. The receive buffer holds an answer of two bytes far longer.
+/// Interval between two reads of the line, a choice. A receive buffer holds the two bytes far longer.
 const READ_EVERY: Micros = Micros::from_millis(5);
 
 /// A US-100 with its jumper set, on a serial line of 9600 baud.
 ///
-/// The byte 0x55 asks for a distance, and two bytes answer, high byte first, in millimetres ("US-100 with RT-Thread
-/// MicroPython", cnblogs 9486575). The burst leaves a millisecond after the poll, when that byte has been sent. The
-/// module takes up to 100 ms, and the driver waits for all of it, so that late bytes of an earlier measurement do not
-/// count. It drops an answer that comes sooner than the echo it reports. An answer is one distance, or the same twice.
+/// The byte 0x55 requests a distance; two bytes answer, high byte first, in millimetres ("US-100 with RT-Thread
+/// MicroPython", cnblogs 9486575). The burst starts a millisecond after the poll, when the byte has been sent. The
+/// module takes up to 100 ms; the driver always waits that long, so that late bytes of an earlier measurement do not
+/// count. It drops an answer that comes sooner than its echo. An answer is one distance, or the same distance twice.
 ///
-/// **Nothing in range** is a distance beyond [`sees_to_mm`](Module::sees_to_mm), a choice, as no document says; beyond
-/// what sound travels within 100 ms it is invalid. The answer has no check sum: if a flipped bit leaves a possible
-/// distance, only the ring's judge can reject it.
+/// **Nothing in range** is a distance beyond [`sees_to_mm`](Module::sees_to_mm): a choice, since it is undocumented. A
+/// distance beyond the reach of sound within 100 ms is invalid. The answer has no check sum: if a flipped bit leaves a
+/// possible distance, only the ring's judge can reject it.
 ///
 /// **Speed of sound.** The module converts time to millimetres by its own thermometer. This driver converts them back
-/// with [`SpeedOfSound::AT_20_CELSIUS`], 343.2 m/s, or the speed of [`with_speed`](Self::with_speed). Convert readings
-/// with the same speed to get the module's millimetres. The echo times are off by 0.18 % for each degree.
+/// with [`SpeedOfSound::AT_20_CELSIUS`], 343.2 m/s, or the speed set by [`with_speed`](Self::with_speed). Convert
+/// readings with that speed to get the module's millimetres. Echo times are off by 0.18 % per degree of difference.
 #[derive(Debug)]
 pub struct Us100<P> {
     port: P,
     speed: SpeedOfSound,
     bytes: [u8; 4],
     count: usize,
-    /// True if an answer came sooner than its own echo, or too soon to know that there is none: it is an earlier one's.
+    /// True if an answer came sooner than its own echo, or too soon to rule one out: it belongs to an earlier start.
     is_stale: bool,
     /// True if the line reported an error since the start.
     broken: bool,
@@ -48,7 +48,7 @@ impl<P: Read + ReadReady + Write> Us100<P> {
         Self { port, speed, bytes: [0; 4], count: 0, is_stale: false, broken: false }
     }
 
-    /// Sets the speed of sound, such as that at the air's temperature.
+    /// Sets the speed of sound, for example for the temperature of the air.
     #[must_use]
     pub fn with_speed(self, speed: SpeedOfSound) -> Self {
         Self { speed, ..self }
@@ -109,7 +109,7 @@ impl<P: Read + ReadReady + Write> Measures for Us100<P> {
     }
 
     fn start(&mut self) -> Result<Micros, Fault> {
-        // Errors of the line are as old as the bytes that are thrown away.
+        // Errors on the line are as old as the bytes discarded here.
         let mut drained = Err(Fault::Bus);
         for _ in 0..MOST_ERRORS {
             drained = match self.read(Micros::ZERO) {

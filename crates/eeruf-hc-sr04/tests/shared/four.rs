@@ -1,4 +1,4 @@
-//! A ring of four modules that measure by themselves and take 100 ms.
+//! A ring of four modules that measure by themselves and take 100 ms each.
 
 use eeruf_core::{Instant, Layout, Micros, Requirements, Ring, RingConfig, ScheduledRing, VerifiedSchedule, schedule};
 

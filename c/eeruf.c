@@ -1,4 +1,4 @@
-/* eeruf in C: see eeruf.h. In the order of the header; the flow ring is the last part.
+/* eeruf in C: see eeruf.h. The parts follow the header; the flow ring comes last.
  * Equations and sections are those of Borenstein and Koren, IEEE Trans. Robotics and Automation 11(1), 1995. */
 #include "eeruf.h"
 
@@ -36,13 +36,13 @@ SIZE_IS(EerufFlowSensor, 42 + PADDING);
 #define READ_POINTER(type, place) (place)
 #endif
 
-/* Where inlining costs more flash than the call, measured on an AVR. */
+/* For functions whose inlining costs more flash than a call, measured on an AVR. */
 #if defined(__GNUC__)
 #define OUT_OF_LINE __attribute__((noinline))
 #else
 #define OUT_OF_LINE
 #endif
-/* Inlined with a constant, so that each kind of ring has its own and links nothing of the other. */
+/* Inlined with a constant argument, so that each kind of ring links nothing of the other. */
 #if defined(__GNUC__)
 #define IN_LINE inline __attribute__((always_inline))
 #else
@@ -98,7 +98,7 @@ static uint8_t firing(const EerufSchedule *schedule, uint8_t sensors, uint8_t ph
     return place < sensors ? READ8(order[at]) : (uint8_t)NOBODY;
 }
 
-/* When a sensor fires in a phase, after the start of the period. */
+/* The time from the start of the period to a sensor's firing in a phase. */
 static uint32_t fires_at(const EerufSchedule *schedule, uint8_t phase, uint8_t sensor) {
     const uint8_t sensors = READ8(schedule->sensors);
     uint32_t at = 0, gap;
@@ -111,7 +111,7 @@ static uint32_t fires_at(const EerufSchedule *schedule, uint8_t phase, uint8_t s
     return at;
 }
 
-/* From a sensor's firing in a phase to its next one. */
+/* The time from a sensor's firing in a phase to its next one. */
 static uint32_t refire(const EerufSchedule *schedule, uint8_t phase, uint8_t sensor) {
     const uint8_t next = phase + 1u < READ8(schedule->phases) ? (uint8_t)(phase + 1u) : 0;
     return fires_at(schedule, next, sensor) + READ32(schedule->period_us) - fires_at(schedule, phase, sensor);
@@ -137,13 +137,13 @@ static bool are_neighbours(const EerufSchedule *schedule, uint8_t x, uint8_t y) 
     }
 }
 
-/* The lead of a sensor's firing in phase b over that in phase a, each after the start of its period. */
+/* How much earlier a sensor fires in phase b than in phase a, each relative to the start of its period. */
 static int32_t shift_of(const EerufSchedule *schedule, uint8_t sensor) {
     return (int32_t)fires_at(schedule, 0, sensor) - (int32_t)fires_at(schedule, 1, sensor);
 }
 
-/* (13a) and (13b) in what rejecting all crosstalk needs of them: |d_x - d_y| and |d_x + d_y|, the smaller. With x = y
-   the second is by how much a sensor's own echo from the period before moves. */
+/* The part of (13a) and (13b) that rejecting all crosstalk needs: the smaller of |d_x - d_y| and |d_x + d_y|. With x =
+   y the second is the shift of a sensor's own echo from the period before. */
 static uint32_t moves_by(const EerufSchedule *schedule, uint8_t x, uint8_t y) {
     const int32_t dx = shift_of(schedule, x), dy = shift_of(schedule, y);
     const uint32_t even = (uint32_t)(dx > dy ? dx - dy : dy - dx);
@@ -151,7 +151,7 @@ static uint32_t moves_by(const EerufSchedule *schedule, uint8_t x, uint8_t y) {
     return x == y ? odd : shorter(even, odd);
 }
 
-/* The needs of one sensor. */
+/* The t_delta of one sensor. */
 static uint32_t own_t_delta(const EerufLimits *limits, uint8_t sensor, uint32_t t_delta_us) {
     return limits == NULL ? t_delta_us : READ16(limits[sensor].t_delta_us);
 }
@@ -162,8 +162,8 @@ static bool fire_together(const EerufLimits *limits, uint8_t x, uint8_t y) {
     return READ8(limits[x].group) == READ8(limits[y].group);
 }
 
-/* Achievements of a schedule: the largest t_delta and window of its sensors, and by how much crosstalk moves at least: as
-   much more than that t_delta as the pair with the least to spare has. */
+/* The limits that a schedule achieves: the largest t_delta and window of its sensors, and the least shift of crosstalk,
+   which exceeds that t_delta by the margin of the closest pair. */
 typedef struct Achieved {
     uint32_t t_delta_us, window_us, separation_us;
 } Achieved;
@@ -221,7 +221,7 @@ static EerufStatus meets(const EerufSchedule *schedule, Achieved *achieved) {
     return last;
 }
 
-/* Time for which sound may be audible where crosstalk moves: its own echo, sent two firings before, reads the same. */
+/* Time for which sound may be audible: beyond it a sensor's own echo, sent two firings before, reads the same. */
 static uint32_t audible_for(const EerufSchedule *schedule) {
     const uint32_t period_us = READ32(schedule->period_us);
     return READ8(schedule->stale_echo) ? 2 * period_us : period_us;
@@ -274,7 +274,7 @@ EerufStatus eeruf_schedule_check(const EerufSchedule *schedule) {
 
 /* ---- The filter ---- */
 
-/* Number of readings in a row that an echo was in, up to `consecutive`; 0 where nothing is known. */
+/* Number of consecutive readings that contained an echo, up to `consecutive`; 0 if nothing is known. */
 #define RUN 0x0fu
 #define DISABLED 0x80u /* of a ring's sensor, kept in the same byte */
 
@@ -283,22 +283,22 @@ static void forget(EerufFilter *filter) {
     filter->state &= DISABLED;
 }
 
-/* The most by which an echo time may be off, and its place in a sensor's filter: units of 2 us, the present firing's
-   first. WIDE for one that is off by more. */
+/* The greatest uncertainty of an echo time. A sensor's filter stores it in units of 2 us, the present firing's first;
+   WIDE stands for more. */
 #define MOST_OFF_US 300u
 #define WIDE UINT8_MAX
 
-/* The most by which the echoes of the present firing and the one before may be off together. */
+/* The joint uncertainty of the echoes of the present firing and the one before. */
 static uint16_t pair_off(const EerufFilter *filter) {
     return (uint16_t)(2 * (filter->off[0] + filter->off[1]));
 }
 
-/* Eq. (11), after taking off the change that is expected. Echoes are below half a turn. */
+/* Tests Eq. (11) after subtracting the expected change. Echoes are below half a turn. */
 static bool near_identical(uint32_t echo_us, uint32_t previous_us, int32_t change_us, uint16_t t_delta_us) {
     /* Silence does not move, and is further from any echo than any t_delta. */
     const bool is_silent = echo_us == EERUF_NO_ECHO || previous_us == EERUF_NO_ECHO;
     const uint32_t change = is_silent ? 0 : (uint32_t)change_us;
-    /* Less than none is taken off the earlier echo. */
+    /* A negative change is added to the later echo instead. */
     if (change >= HALF_TURN) echo_us += 0u - change;
     else previous_us += change;
     return apart(echo_us, previous_us) <= t_delta_us;
@@ -309,7 +309,7 @@ static bool agrees(const EerufFilter *filter, uint16_t t_delta_us, uint32_t t_ec
     return (filter->state & RUN) != 0 && near_identical(t_echo_us, filter->known_us, change_us, t_delta_us);
 }
 
-/* Takes in a reading that agrees with the one before or not, or agrees but is explained. Returns its kind. */
+/* Records a reading that agrees with the one before, agrees but is explained, or does not agree. Returns its kind. */
 static uint8_t push(EerufFilter *filter, uint8_t consecutive, uint32_t t_echo_us, bool agreed, bool explained) {
     const bool silent = t_echo_us == EERUF_NO_ECHO, was_silent = filter->known_us == EERUF_NO_ECHO;
     uint8_t run = 1;
@@ -326,8 +326,8 @@ static uint8_t push(EerufFilter *filter, uint8_t consecutive, uint32_t t_echo_us
     return run == 1 ? EERUF_READING_REJECTED : EERUF_READING_REPEATED;
 }
 
-/* The firing that an echo time is measured from was so much later, modulo 2^32. False if the echo came before it; it
-   then counts as having come with it. */
+/* Moves the origin of an echo time to a firing `later_us` later, modulo 2^32. False if the echo came before that
+   firing; it then counts as simultaneous. */
 static bool shift(uint32_t *t_echo_us, uint32_t later_us) {
     const uint32_t echo_us = *t_echo_us;
     if (echo_us == EERUF_NO_ECHO) return true;
@@ -341,19 +341,19 @@ static bool shift(uint32_t *t_echo_us, uint32_t later_us) {
 
 /* ---- The ring ---- */
 
-/* The flags of a sensor, beside the period in which it fired, modulo 8. */
+/* The flags of a sensor, in addition to the period in which it fired, modulo 8. */
 #define PERIOD 0x07u
 #define LISTENING 0x08u    /* it has fired, and its reading is pending */
 #define CAN_EMIT 0x10u     /* it has a reading that can be emitted before its window closes */
 #define OUTSIDE 0x20u      /* its only edges so far came outside the window */
-/* The evidence, in two bits: none of them where it is complete. */
+/* The evidence, in two bits: neither is set once it is complete. */
 #define STUCK 0x40u        /* its line was high when it was to fire */
-#define UNANSWERED 0x80u   /* nothing has shown yet that it listens: silence says nothing */
-#define HELD 0xc0u         /* it holds its line: silence counts when that has fallen. Kept after its reading */
-#define NO_FAULT 0x01u     /* beside UNANSWERED in the ring: nor is it called a fault */
+#define UNANSWERED 0x80u   /* nothing has shown yet that it listens: silence means nothing */
+#define HELD 0xc0u         /* it holds its line: silence counts once that has fallen. Outlasts the reading */
+#define NO_FAULT 0x01u     /* with UNANSWERED in the ring: silence is no fault either */
 
-/* Flow rings fire otherwise than by a table. What is linked for all takes `flows` as a constant, so that nothing of the
-   one kind is linked where only the other is polled; FLOWS asks the ring. */
+/* Flow rings do not fire by a table. Common code takes `flows` as a constant, so that only the kinds of rings that a
+   program polls are linked; FLOWS asks the ring. */
 #define FLOWS(ring) ((ring)->consecutive == 0)
 #define FLOW_FIRINGS 3u /* fewer explain nothing, more add nothing */
 static void fire_flow(EerufRing *ring, uint8_t sensor, uint32_t now_us);
@@ -385,22 +385,21 @@ static void count(EerufRing *ring, uint8_t kind) {
 
 #define AS_T_DELTA UINT16_MAX        /* the path change of a ring that follows its t_delta */
 #define MAX_AUDIBLE ((uint32_t)1 << 26)
-#define LONG_AGO ((uint32_t)1 << 30) /* nothing is heard from then */
-#define STEP_BACK ((uint32_t)1 << 20) /* what lies so little ahead of now is from before the clock stepped back */
+#define LONG_AGO ((uint32_t)1 << 30) /* older firings are not heard */
+#define STEP_BACK ((uint32_t)1 << 20) /* an instant less far ahead of now is from before a step back of the clock */
 
-/* For this many ends of periods an irregularity is remembered: the first of three readings, which a filter over three may
-   compare, was fired three periods ago, and sound is audible for two. */
+/* Number of ends of periods for which an irregularity is remembered: the first of three readings, which a filter over
+   three may compare, was fired three periods ago, and sound is audible for two. */
 #define WATCHED 6u
-#define ALWAYS UINT8_MAX /* nothing is proven of the timetable, so that each reading is asked about */
+#define ALWAYS UINT8_MAX /* the timetable is unproven, so each reading is checked */
 
-/* Limits that a schedule gives its sensors one by one; null without one: for a flow ring, or if it was the same
-   before. */
+/* The limits of a schedule's single sensors; null without a schedule: for a flow ring, or if it did not change. */
 static OUT_OF_LINE const EerufLimits *limits_of(const EerufSchedule *schedule) {
     return schedule == NULL ? NULL : READ_POINTER(const EerufLimits *, schedule->limits);
 }
 
-/* The answers for limits, so that with rings that have none nothing of it is linked, or asked: null until one that
-   has some begins. Its questions, of a sensor and a value; FIRST_TO_CLOSE changes the ring. */
+/* Answers questions about limits of single sensors. Null until a ring with such limits begins, so that other programs
+   link none of it. The questions concern a sensor and a value; FIRST_TO_CLOSE changes the ring. */
 enum { WINDOW, SHORTEST_WINDOW, T_DELTA, TOGETHER, DIFFER, FIRST_TO_CLOSE };
 static uint32_t (*limited)(const EerufRing *ring, uint8_t what, uint8_t x, uint32_t value);
 
@@ -416,12 +415,12 @@ static uint16_t t_delta_of(const EerufRing *ring, uint8_t sensor) {
     return limited == NULL ? ring->t_delta_us : (uint16_t)limited(ring, T_DELTA, sensor, ring->t_delta_us);
 }
 
-/* True if a sensor fires together with another, and so does not hear it. */
+/* True if a sensor does not hear another, because both fire together. */
 static bool is_deaf_to(const EerufRing *ring, uint8_t receiver, uint8_t emitter) {
     return limited != NULL && limited(ring, TOGETHER, receiver, emitter) != 0;
 }
 
-/* Time for which a sensor listens that is to listen for `window_us`: no longer than a schedule allows it. */
+/* The time for which a sensor listens: `window_us`, or less if the schedule allows it less. */
 static OUT_OF_LINE uint32_t allowed_window(const EerufSchedule *schedule, uint8_t sensor, uint32_t window_us) {
     const EerufLimits *limits = limits_of(schedule);
     uint32_t own_us;
@@ -457,7 +456,7 @@ static uint32_t path_change_of(const EerufRing *ring, uint16_t t_delta_us) {
     return ring->path_change_us == AS_T_DELTA ? t_delta_us : ring->path_change_us;
 }
 
-/* Something irregular happened, or something else is asked of the schedule: whether it was verified for that. */
+/* Notes an irregularity or a changed setting: checks whether the schedule was verified for it. */
 static OUT_OF_LINE void disturb(EerufRing *ring) {
     const EerufSchedule *schedule = ring->schedule;
     uint32_t promised_us;
@@ -467,7 +466,7 @@ static OUT_OF_LINE void disturb(EerufRing *ring) {
     if (promised_us == EERUF_AS_T_DELTA) promised_us = READ32(schedule->t_delta_us);
     if (ring->path_change_us != AS_T_DELTA && ring->path_change_us > promised_us) return;
     if (ring->audible_us > READ32(schedule->audible_us)) return;
-    /* Sound that was sent two periods apart differs by the time until a sensor fires again. */
+    /* Sound sent two periods apart moves by at least the shortest time between a sensor's firings. */
     if (ring->t_delta_us + path_change_of(ring, ring->t_delta_us) < READ32(schedule->min_refire_us))
         ring->watched = WATCHED;
 }
@@ -476,13 +475,13 @@ static void note_late(EerufRing *ring, uint16_t late_us) {
     if (late_us > ring->latest_us) ring->latest_us = late_us;
 }
 
-/* The timetable got longer at a firing. */
+/* Notes that a firing made the timetable longer. */
 static void add_late(EerufRing *ring, uint16_t late_us) {
     note_late(ring, late_us);
     ring->sum_late_us = add16(ring->sum_late_us, late_us);
 }
 
-/* A firing came late. No two readings hear more than four periods. */
+/* Handles a late firing. Two readings span at most four periods. */
 static OUT_OF_LINE void fired_late(EerufRing *ring, uint16_t late_us, bool flows) {
     uint32_t needed_us;
     add_late(ring, late_us);
@@ -491,12 +490,12 @@ static OUT_OF_LINE void fired_late(EerufRing *ring, uint16_t late_us, bool flows
     if (READ32(ring->schedule->separation_us) < needed_us) ring->watched = WATCHED;
 }
 
-/* The sensor whose sound could be both echoes of a receiver, by a path that changes by up to `more` than P: the one heard
-   `first_us` after the firing before its last, and the one heard `second_us` after its last. */
+/* Finds the sensor whose sound explains two echoes of a receiver: one heard `first_us` after its second-to-last firing,
+   the other `second_us` after its last, along a path that changes by up to P plus `more_us`. */
 static OUT_OF_LINE uint8_t explanation(const EerufRing *ring, uint8_t receiver, uint32_t first_us, uint32_t second_us,
                                        uint32_t more_us) {
     const EerufSensor *own = sensor_of(ring, receiver), *sensor = ring->sensors;
-    /* Both may be as late as that, and twice as long ago. */
+    /* Both echoes may be this much later, and their firings audible for twice this longer. */
     const uint8_t *off = own->filter.off, most_off = off[0] > off[1] ? off[0] : off[1];
     const uint32_t heard_before = own->fired_us[1] + first_us + 2u * most_off;
     const uint32_t heard = own->fired_us[0] + second_us + 2u * most_off;
@@ -506,7 +505,7 @@ static OUT_OF_LINE uint8_t explanation(const EerufRing *ring, uint8_t receiver, 
     uint8_t x = 0, by = EERUF_BY_NOTHING;
     for (;;) {
         const uint32_t *before = sensor->fired_us, *fired, *end = before + FIRINGS(FLOWS(ring));
-        /* All that is forgotten was fired before this. An instant after the first reading leaves that open. */
+        /* All forgotten firings came before this. If it is after the first reading, one may explain it. */
         if (length < audible || length >= HALF_TURN) by = EERUF_BY_HISTORY;
         if (x == ring->count) return by;
         if (is_deaf_to(ring, receiver, x)) {
@@ -516,7 +515,7 @@ static OUT_OF_LINE uint8_t explanation(const EerufRing *ring, uint8_t receiver, 
         for (; before < end; before++) {
             length = heard_before - *before;
             if (length > audible || before == own->fired_us + 1) continue;
-            /* Both may be one firing if the readings are as close as that. */
+            /* Both may be the same firing if the readings are that close. */
             for (fired = sensor->fired_us; fired <= before; fired++) {
                 if (fired == own->fired_us || heard - *fired > audible) continue;
                 if (*fired - *before - between + change <= 2 * change) return x;
@@ -531,7 +530,7 @@ static bool is_long_ago(uint32_t instant, uint32_t now_us) {
     return now_us - instant - LONG_AGO - 1u < 0u - STEP_BACK - LONG_AGO - 1u;
 }
 
-/* All firings so long ago that nothing is heard of them. */
+/* Sets all firings to an instant too long ago to be heard. */
 static void forget_firings(EerufSensor *sensor, uint8_t firings, uint32_t now_us) {
     while (firings-- > 0) sensor->fired_us[firings] = now_us - LONG_AGO;
 }
@@ -543,14 +542,14 @@ static IN_LINE void end_late_period(EerufRing *ring, EerufPeriod *ended, uint32_
     ended->max_late_us = ring->latest_us;
     ended->sum_late_us = ring->sum_late_us;
     ring->latest_us = ring->sum_late_us = 0;
-    /* Old firings must not come round with the clock. */
+    /* Old firings must not look recent after a wrap of the clock. */
     for (x = 0; x < ring->count; x++) {
         EerufSensor *sensor = sensor_of(ring, x);
         if (is_long_ago(sensor->fired_us[0], now_us)) {
             forget_firings(sensor, FIRINGS(flows), now_us);
             /* The next reading cannot be compared: the instant of its firing before is no longer known. */
             forget_readings(ring, x);
-            /* No edge is an echo of them. */
+            /* No edge can be an echo of them. */
             if (!(sensor->filter.flags & LISTENING))
                 sensor->filter.flags = (uint8_t)((sensor->filter.flags & PERIOD) | OUTSIDE);
         }
@@ -559,8 +558,8 @@ static IN_LINE void end_late_period(EerufRing *ring, EerufPeriod *ended, uint32_
     if (is_long_ago(ring->known_from_us, now_us)) ring->known_from_us = now_us - LONG_AGO;
 }
 
-/* -- Scheduled firing (Sec. 3.1, Fig. 3): every sensor fires once per period, by the table. A firing that is polled
-   late moves all that follow by as much: the timetable may stretch but never shrinks. -- */
+/* -- Scheduled firing (Sec. 3.1, Fig. 3): every sensor fires once per period, by the table. A late firing delays all
+   later ones by as much: the timetable may stretch but never shrinks. -- */
 
 static void turn_once(EerufRing *ring) {
     uint32_t gap_us;
@@ -574,7 +573,7 @@ static void skip_silent(EerufRing *ring) {
         turn_once(ring);
 }
 
-/* After the firing, or the start of the period, at `due_us`. */
+/* Moves on to the next sensor after a firing, or the start of the period, at `due_us`. */
 static OUT_OF_LINE void turn(EerufRing *ring) {
     turn_once(ring);
     skip_silent(ring);
@@ -586,18 +585,18 @@ static OUT_OF_LINE void begin_period(EerufRing *ring, uint8_t phase) {
     turn(ring);
 }
 
-/* Time to stay silent after the last firing so that a period which was not verified against it may begin. */
+/* Silence needed between the last firing and a period that was not verified against it. */
 static uint32_t settling_time(const EerufSchedule *schedule) {
     const uint32_t least = is_verified(schedule) ? READ32(schedule->min_interval_us) : READ32(schedule->period_us);
     return longer(least, READ32(schedule->min_refire_us));
 }
 
-/* No deadline lies further ahead, unless the clock has jumped. */
+/* The longest time to a deadline, unless the clock has jumped. */
 static OUT_OF_LINE uint32_t horizon_of_table(const EerufRing *ring) {
     return longer(3 * READ32(ring->schedule->period_us), ring->due_us - ring->last_fired_us);
 }
 
-/* Ends the period of a table. Returns whether the next one does not follow on it as the schedule says. */
+/* Ends the period of a table. Returns true if the next one does not follow as scheduled. */
 static bool end_period_of_table(EerufRing *ring, uint32_t now_us, uint32_t late_us) {
     const uint32_t settling = settling_time(ring->schedule);
     const bool changed = late_us > READ32(ring->schedule->period_us);
@@ -609,7 +608,7 @@ static bool end_period_of_table(EerufRing *ring, uint32_t now_us, uint32_t late_
     return changed;
 }
 
-/* Begins with the first phase, silent for long enough by then. */
+/* Begins with the first phase, assuming enough silence before it. */
 static OUT_OF_LINE void begin_table(EerufRing *ring, uint32_t at_us) {
     ring->due_us = at_us;
     ring->last_fired_us = at_us - settling_time(ring->schedule);
@@ -618,11 +617,11 @@ static OUT_OF_LINE void begin_table(EerufRing *ring, uint32_t at_us) {
 
 static void restart_table(EerufRing *ring, uint32_t now_us) {
     const uint32_t settled_us = ring->last_fired_us + settling_time(ring->schedule);
-    /* A clock that has jumped says nothing about when the last firing was. */
+    /* After a jump of the clock, the instant of the last firing is meaningless. */
     begin_table(ring, settled_us - now_us - 1u < horizon_of_table(ring) ? settled_us : now_us);
 }
 
-/* -- What a ring does -- */
+/* -- The operations of a ring -- */
 
 static EerufStatus is_ready(const EerufRing *ring) {
     if (ring == NULL) return EERUF_ERR_NULL;
@@ -634,7 +633,7 @@ static EerufStatus has_sensor(const EerufRing *ring, uint8_t sensor) {
     return status == EERUF_OK && sensor >= ring->count ? (EerufStatus)EERUF_ERR_SENSOR : status;
 }
 
-/* True if a schedule allows such listening and comparing. */
+/* Checks that a schedule allows this t_delta and window. */
 static EerufStatus allows(const EerufSchedule *schedule, uint32_t t_delta_us, uint32_t window_us) {
     if (is_verified(schedule)) {
         if (t_delta_us > READ32(schedule->t_delta_us)) return EERUF_ERR_T_DELTA;
@@ -646,13 +645,13 @@ static EerufStatus allows(const EerufSchedule *schedule, uint32_t t_delta_us, ui
     return window_us > READ32(schedule->min_refire_us) || window_us >= HALF_TURN ? EERUF_ERR_WINDOW : EERUF_OK;
 }
 
-/* True if the shortest window that is allowed is long enough. */
+/* Checks that the window exceeds blanking and t_delta. */
 static EerufStatus can_hear(uint32_t t_delta_us, uint32_t window_us, uint32_t blanking_us) {
     if (blanking_us >= window_us || blanking_us > UINT16_MAX) return EERUF_ERR_BLANKING;
     return t_delta_us >= window_us || t_delta_us > UINT16_MAX ? EERUF_ERR_COARSE_T_DELTA : EERUF_OK;
 }
 
-/* Listens and compares so from now on, if that is possible. */
+/* Sets t_delta, window and blanking from now on, if they are allowed. */
 static EerufStatus listen(EerufRing *ring, uint32_t t_delta_us, uint32_t window_us, uint32_t blanking_us) {
     const uint32_t shortest_us = limited == NULL ? window_us : limited(ring, SHORTEST_WINDOW, 0, window_us);
     const EerufStatus status = can_hear(t_delta_us, shortest_us, blanking_us);
@@ -672,8 +671,8 @@ static OUT_OF_LINE void drop_firing(EerufRing *ring, uint8_t x, uint32_t now_us)
     sensor->filter.off[0] = 0;
 }
 
-/* Everything but listening and scheduler. As if silence had come before: what was fired earlier is for the caller to
-   wait for. */
+/* Sets up all but listening and scheduling. It assumes silence before: the caller must wait until earlier sound has
+   died. */
 static void set_up(EerufRing *ring, const EerufSchedule *schedule, void *sensors, uint8_t count_of_sensors,
                    size_t stride, uint8_t consecutive, void (*hook)(EerufRing *, uint8_t, uint32_t), uint32_t now_us) {
     uint8_t x;
@@ -716,7 +715,7 @@ static EerufStatus init(EerufRing *ring, size_t ring_size, EerufSensor *sensors,
     if (t_delta_us == 0) t_delta_us = READ32(schedule->t_delta_us);
     if (window_us == 0) window_us = READ32(schedule->window_us);
     heed_limits(schedule);
-    /* A table allows what it was verified for. */
+    /* By default a table sets what it was verified for. */
     if (config->t_delta_us != 0 || config->window_us != 0) status = allows(schedule, t_delta_us, window_us);
     if (status != EERUF_OK) return status;
     set_up(ring, schedule, sensors, count_of_sensors, sizeof *sensors, config->consecutive, NULL, now_us);
@@ -727,7 +726,7 @@ static EerufStatus init(EerufRing *ring, size_t ring_size, EerufSensor *sensors,
     ring->path_change_us = (uint16_t)config->path_change_us;
     if (config->path_change_us == 0) ring->path_change_us = narrow(READ32(schedule->path_change_us));
     ring->audible_us = config->audible_us;
-    /* One that was not verified does not say it. */
+    /* An unverified schedule does not give it. */
     if (ring->audible_us == 0) ring->audible_us = READ32(schedule->audible_us);
     if (ring->audible_us == 0) ring->audible_us = READ32(schedule->period_us);
     ring->audible_us = shorter(ring->audible_us, MAX_AUDIBLE);
@@ -748,24 +747,24 @@ EerufStatus eeruf_ring_init_unverified(EerufRing *ring, size_t ring_size, EerufS
     return init(ring, ring_size, sensors, sensors_size, schedule, config, now_us, false);
 }
 
-/* True if a reading will be emitted without a further firing: one is pending or there is an oldest. In one byte, since
-   two branches take more. */
+/* True if a reading will be emitted without another firing: one is pending or there is an oldest. In one expression,
+   since two branches take more flash. */
 static bool has_pending(const EerufRing *ring) {
     return (uint8_t)(ring->pending | (ring->oldest ^ NOBODY)) != 0;
 }
 
-/* When a sensor's last firing ends if there is no echo. */
+/* The instant when a sensor's last firing ends if there is no echo. */
 static uint32_t closes_at(const EerufRing *ring, uint8_t x) {
     return sensor_of(ring, x)->fired_us[0] + longer(window_of(ring, x), ring->report_after_us);
 }
 
-/* Without a reading that can be emitted sooner, the next one comes when the window of the oldest closes. */
+/* Sets the next emission to the end of the oldest window, if no reading can be emitted sooner. */
 static OUT_OF_LINE void emit_when_oldest_ends(EerufRing *ring) {
     if (ring->pending == 0 && ring->oldest != NOBODY)
         ring->emit_at_us = closes_at(ring, ring->oldest);
 }
 
-/* Where windows differ, the oldest is the one whose window closes first. */
+/* Finds the sensor whose window closes first, which is the oldest if windows differ. */
 static void find_first_to_close(EerufRing *ring) {
     uint8_t x;
     ring->oldest = NOBODY;
@@ -825,7 +824,7 @@ static IN_LINE void fire(EerufRing *ring, uint8_t sensor, uint32_t now_us, uint1
 #define USABLE EERUF_READING_KINDS
 #define ON_HOLD (EERUF_READING_KINDS + 1u) /* silence that does not count yet */
 
-/* The kind of a firing that says nothing of the echo time; or USABLE, or ON_HOLD. */
+/* The kind of a firing that says nothing about the echo time; else USABLE or ON_HOLD. */
 static uint8_t unusable(const EerufRing *ring, uint8_t flags, uint8_t off, uint32_t t_echo_us) {
     if ((flags & HELD) == STUCK) return EERUF_READING_STUCK;
     if (off == WIDE) return EERUF_READING_LATE;
@@ -849,7 +848,7 @@ static void compare(EerufRing *ring, uint8_t x, int32_t change_us, EerufReading 
         const uint32_t echo_us = reading->t_echo_us;
         const bool agreed = agrees(filter, t_delta_of(ring, x), echo_us, change_us);
 #if EERUF_FIRINGS > 1
-        /* The proof is about readings that differ by no more than t_delta, at times that are known. */
+        /* The proof covers readings that differ by no more than t_delta, at known times. */
         if (agreed && (ring->watched != 0 || change_us != 0 || pair_off(filter) != 0) && echo_us != EERUF_NO_ECHO)
             reading->explained_by = explanation(ring, x, filter->known_us, echo_us, 0);
 #endif
@@ -860,10 +859,10 @@ static void compare(EerufRing *ring, uint8_t x, int32_t change_us, EerufReading 
     reading->age = filter->age;
 }
 
-/* Questions to the hook of a flow ring: see there. */
+/* Calls of a flow ring's hook: see change_flow. */
 enum { FORGETS = 0, BEGINS_AGAIN = 1, SILENCE_COUNTS = 2 };
 
-/* A silence counts whose reading is out. */
+/* Counts a silence whose reading was already emitted. */
 static OUT_OF_LINE void count_silence(EerufRing *ring, uint8_t x) {
     EerufFilter *filter = &sensor_of(ring, x)->filter;
     if (FLOWS(ring)) {
@@ -933,7 +932,7 @@ static IN_LINE void end_period(EerufRing *ring, uint32_t now_us, uint32_t late_u
     }
 }
 
-/* A sensor with a reading to emit, or NOBODY: the first with an echo in, or the oldest if it is time for that. */
+/* A sensor with a reading to emit, or NOBODY: the first with an echo, or the oldest if its window is over. */
 static uint8_t next_pending(const EerufRing *ring, bool emits) {
     uint8_t x;
     if (ring->pending == 0) return emits ? ring->oldest : (uint8_t)NOBODY;
@@ -946,8 +945,8 @@ static uint8_t next_pending(const EerufRing *ring, bool emits) {
 static IN_LINE void restart(EerufRing *ring, uint32_t now_us, bool flows) {
     uint8_t x;
     if (!flows) restart_table(ring, now_us);
-    /* Sound from before may still be heard, and its firings are no longer known by this clock. One that was said to
-       fire a little later still does. */
+    /* Earlier sound may still be heard, and its firings are unknown by this clock. A firing corrected to an instant
+       just ahead is still known. */
     ring->known_from_us = now_us;
     for (x = 0; x < ring->count; x++) {
         const uint32_t fired_us = sensor_of(ring, x)->fired_us[0];
@@ -960,7 +959,7 @@ static IN_LINE void restart(EerufRing *ring, uint32_t now_us, bool flows) {
     if (!flows) disturb(ring);
 }
 
-/* Called by each poll and by the caller. */
+/* Called both by polls and by the caller. */
 static OUT_OF_LINE void restart_by_table(EerufRing *ring, uint32_t now_us) {
     restart(ring, now_us, false);
 }
@@ -1000,7 +999,7 @@ static IN_LINE EerufStatus poll(EerufRing *ring, uint32_t now_us, const int32_t 
     return EERUF_EVENT;
 }
 
-/* A ring that fires by a table. */
+/* Checks that a ring fires by a table. */
 static EerufStatus has_table(const EerufRing *ring) {
     const EerufStatus status = is_ready(ring);
     return status == EERUF_OK && FLOWS(ring) ? (EerufStatus)EERUF_ERR_FLOW : status;
@@ -1059,13 +1058,13 @@ EerufStatus eeruf_ring_upcoming(const EerufRing *ring, uint8_t number, uint8_t *
     }
 }
 
-/* Takes in the evidence of the present firing. A line that was stuck says nothing more. */
+/* Records evidence about the present firing. If the line was stuck, nothing more counts. */
 static void show(EerufRing *ring, uint8_t x, uint8_t evidence) {
     uint8_t *flags = &sensor_of(ring, x)->filter.flags;
     if ((*flags & LISTENING) && (*flags & HELD) != STUCK) *flags = (uint8_t)((*flags & ~HELD) | evidence);
 }
 
-/* The evidence is complete. */
+/* Records that the evidence is complete. */
 static void answer(EerufRing *ring, uint8_t x) {
     uint8_t *flags = &sensor_of(ring, x)->filter.flags;
     const bool counts = (*flags & (HELD | LISTENING)) == HELD;
@@ -1073,7 +1072,7 @@ static void answer(EerufRing *ring, uint8_t x) {
     if (counts) count_silence(ring, x);
 }
 
-/* An echo, which may be off by half this width, and taken back until it has settled. */
+/* Records an echo, which may be off by half `width_us` and may be taken back until `settled_us`. */
 static OUT_OF_LINE void hear(EerufRing *ring, uint8_t x, uint32_t at_us, uint32_t width_us, uint32_t settled_us) {
     EerufSensor *sensor = sensor_of(ring, x);
     const uint32_t off_us = width_us - width_us / 2, window_us = window_of(ring, x);
@@ -1083,7 +1082,7 @@ static OUT_OF_LINE void hear(EerufRing *ring, uint8_t x, uint32_t at_us, uint32_
     uint8_t off = WIDE;
     if (off_us > MOST_OFF_US && (int32_t)t_echo_us >= (int32_t)ring->blanking_us - (int32_t)off_us &&
         (!(flags & LISTENING) || is_before || t_echo_us <= window_us + off_us)) {
-        /* Too uncertain an edge: without an echo before it the firing has none. */
+        /* Too uncertain an edge: without an earlier echo the firing has none. */
         if (!(flags & LISTENING)) return;
         if (!(flags & OUTSIDE) && !is_before && add32(sensor->echo_us, off_us) <= t_echo_us) return;
         sensor->filter.flags |= CAN_EMIT;
@@ -1147,13 +1146,13 @@ EerufStatus eeruf_ring_fired(EerufRing *ring, uint8_t x, uint32_t at_us) {
     polled_us = sensor->fired_us[0];
     later_us = at_us - polled_us;
     if (later_us == 0) return EERUF_OK;
-    /* Only after its firing before. */
+    /* Only to an instant after its previous firing. */
     if (FIRINGS(FLOWS(ring)) > 1 && at_us - sensor->fired_us[1] - 1u >= HALF_TURN - 1u) return EERUF_OK;
     sensor->fired_us[0] = at_us;
-    /* The reading of a firing that has ended is with the filter. */
+    /* The reading of a firing that has ended is in the filter. */
     if (FLOWS(ring)) correct_flow(ring, x, later_us);
     else if (!(sensor->filter.flags & LISTENING) && !shift(&sensor->filter.known_us, later_us)) forget(&sensor->filter);
-    /* Where the first edge came before it fired, it may have kept out the echo. */
+    /* An edge from before the firing may have kept out the echo. */
     if (!shift(&sensor->echo_us, later_us)) sensor->filter.flags |= OUTSIDE;
     if (sensor->filter.flags & LISTENING) {
         if (later_us < HALF_TURN) {
@@ -1225,7 +1224,7 @@ static void forget_readings(EerufRing *ring, uint8_t sensor) {
     else forget(&sensor_of(ring, sensor)->filter);
 }
 
-/* The last reading was not what it seemed. */
+/* Forgets the last reading, which was false. */
 static void begin_again(EerufRing *ring, uint8_t sensor) {
     forget_readings(ring, sensor);
     if (FLOWS(ring)) ring->hook(ring, sensor, BEGINS_AGAIN);
@@ -1279,7 +1278,7 @@ EerufStatus eeruf_ring_restart(EerufRing *ring, uint32_t now_us) {
     return status;
 }
 
-/* No sensor fires again within this time. */
+/* The shortest time between two firings of a sensor. */
 static uint32_t least_refire(const EerufRing *ring) {
     if (FLOWS(ring)) return longer(((const EerufFlowRing *)(const void *)ring)->rest_us, ring->window_us);
     return READ32(ring->schedule->min_refire_us);
@@ -1295,9 +1294,9 @@ EerufStatus eeruf_ring_set_report_after(EerufRing *ring, uint32_t report_after_u
     return EERUF_OK;
 }
 
-/* ---- The state before each sensor ---- */
+/* ---- The state in front of each sensor ---- */
 
-/* In one byte: the state, why nothing is known, whether the last reading was silence, and whether it did not confirm. */
+/* Bits of one byte: the state, why nothing is known, if the last reading was silence, and if it did not confirm. */
 #define KNOWN 0x07u
 #define WHY_AT 3u
 #define SILENT 0x40u
@@ -1328,7 +1327,7 @@ EerufStatus eeruf_watch_init(EerufWatch *watch, size_t watch_size, EerufWatched 
     return EERUF_OK;
 }
 
-/* The state that a reading shows, with EERUF_STATE_UNKNOWN why; NOBODY for a reading after the one of its firing. */
+/* The state that a reading shows, with the reason if it is unknown; NOBODY if its firing has already had a reading. */
 static uint8_t state_by(const EerufReading *reading) {
     switch (reading->kind) {
     case EERUF_READING_ACCEPTED:
@@ -1353,13 +1352,13 @@ static void watch_reading(EerufWatched *sensor, const EerufReading *reading, uin
     if (reading->kind == EERUF_READING_NO_ECHO)
         state = (uint8_t)((sensor->state & SILENT ? EERUF_WHY_NO_WITNESS << WHY_AT : state) | SILENT);
     if ((state & KNOWN) == EERUF_STATE_UNKNOWN && sensor->state == EERUF_STATE_OBSTACLE) {
-        /* One echo may be missed, or another's heard. */
+        /* One echo may be missed, or a foreign one heard. */
         sensor->state = (uint8_t)(sensor->state | DOUBTED | (state & SILENT));
         return;
     }
     sensor->state = state;
     sensor->explained_by = reading->explained_by;
-    /* Time for which nothing is known or answered goes on. */
+    /* The time without knowledge or answer keeps counting. */
     if ((state & KNOWN) == known && (known == EERUF_STATE_UNKNOWN || known == EERUF_STATE_UNANSWERED)) return;
     sensor->at_us = now_us;
     sensor->t_echo_us = reading->t_echo_us;
@@ -1397,7 +1396,7 @@ EerufStatus eeruf_watch_state(const EerufWatch *watch, uint8_t sensor, uint32_t 
 
 /* ---- Distances ---- */
 
-/* (a b + add) / d, rounded down, where add < d; stops at UINT32_MAX. In 32 bits, since a division of 64 costs a small
+/* (a b + add) / d, rounded down, where add < d; stops at UINT32_MAX. In 32 bits, since 64-bit division costs a small
    target more flash than all the rest here. */
 static uint32_t multiply_divide(uint32_t a, uint32_t b, uint32_t add, uint32_t d) {
     const uint32_t whole = b / d, part = b % d;
@@ -1442,17 +1441,17 @@ uint32_t eeruf_distance_mm(uint32_t t_echo_us, uint32_t c_mm_s) {
 /* ---- Edges ---- */
 
 #if defined(__GNUC__)
-#define FENCE() __atomic_thread_fence(__ATOMIC_SEQ_CST) /* on one core no more than an order for the compiler */
+#define FENCE() __atomic_thread_fence(__ATOMIC_SEQ_CST) /* on one core merely a barrier for the compiler */
 #else
 #define FENCE() ((void)0)
 #endif
 
-/* A width in units of 8 us, rounded up; 255 for more, which is wide for every edge. */
+/* A width in units of 8 us, rounded up; 255 for anything longer, too wide for every edge. */
 static uint8_t in_8us(uint32_t width_us) {
     return (uint8_t)shorter(narrow(width_us + 7) >> 3, UINT8_MAX);
 }
 
-/* Converts an uncertainty to a byte of an edge, above 127 of these units in as many as 32 of them, and back: any time for 255. */
+/* Converts an uncertainty to a byte and back: units of 8 us up to 127, then of 256 us; 255 stands for any time. */
 #define FINE 127u
 #define ANY_TIME ((uint32_t)1 << 20)
 
@@ -1521,8 +1520,8 @@ EerufStatus eeruf_edges_pop(EerufEdges *edges, EerufEdge *edge) {
 
 /* ---- HC-SR04 ---- */
 
-#define ENDED UINT16_MAX /* the width of a pulse that does not go on after a gap */
-/* The state of a line, in one byte: where its pulse is, what is wrong with this firing, and the module's health. */
+#define ENDED UINT16_MAX /* the width of a pulse that cannot go on after a gap */
+/* The state of a line, in one byte: the stage of its pulse, the flaw of this firing, and the module's health. */
 #define PULSE 0x03u
 #define IDLE 0x00u /* nothing is expected */
 #define AWAITED 0x01u
@@ -1533,7 +1532,7 @@ EerufStatus eeruf_edges_pop(EerufEdges *edges, EerufEdge *edge) {
 #define LOST_EDGE 0x08u
 #define HEALTH_AT 4u
 #define HEALTH 0x70u
-#define SEEN_HIGH 0x80u /* when the module was to be triggered again, so that it was not */
+#define SEEN_HIGH 0x80u /* when it was to be triggered again; so it was not */
 
 static void set_bits(EerufLine *line, uint8_t mask, uint8_t bits) {
     line->state = (uint8_t)((line->state & ~mask) | bits);
@@ -1567,7 +1566,7 @@ EerufStatus eeruf_hc_sr04_init(EerufHcSr04 *modules, size_t modules_size, EerufL
     modules->lines = lines;
     modules->settings = settings;
     modules->ready = READY;
-    /* A line that does not rise is no free space. */
+    /* A line that does not rise is not free space. */
     return eeruf_ring_set_silence(ring, EERUF_SILENCE_NEEDS_ANSWER);
 }
 
@@ -1575,23 +1574,23 @@ static uint8_t health_of(const EerufLine *line) {
     return (uint8_t)((line->state & HEALTH) >> HEALTH_AT);
 }
 
-/* The health by the last firing, before the next trigger. */
+/* The health after the last firing, before the next trigger. */
 static uint8_t end_firing(EerufLine *line, uint8_t missing_after) {
     const uint8_t pulse = line->state & PULSE, flaw = line->state & FLAW;
     if (pulse == AWAITED && flaw == 0) {
         if (line->silent < UINT8_MAX) line->silent++;
         if (line->silent >= missing_after) return EERUF_HEALTH_MISSING;
     } else if (pulse != IDLE) {
-        if (pulse != AWAITED) line->silent = 0; /* it is no longer by how much sooner the line may have risen */
-        if (pulse == ROSE) return EERUF_HEALTH_LOSES_EDGES; /* if it is still high it is stuck, as will be seen */
-        /* A pulse may follow what was taken for the end of one whose beginning was too soon after the trigger. */
+        if (pulse != AWAITED) line->silent = 0; /* no longer how much sooner the line may have risen */
+        if (pulse == ROSE) return EERUF_HEALTH_LOSES_EDGES; /* if it is still high, the next trigger finds it stuck */
+        /* A pulse may follow the apparent end of a pulse that began within the deaf time. */
         if (flaw == 0 || (pulse == OVER && flaw == LOST_EDGE)) return EERUF_HEALTH_WELL;
         return flaw == CHATTERED ? EERUF_HEALTH_CHATTERS : EERUF_HEALTH_LOSES_EDGES;
     }
     return health_of(line);
 }
 
-/* A firing begins; without health the line is well, and has been seen to be low unless hardware has triggered it. */
+/* Begins a firing. With EERUF_HEALTH_WELL the line has been seen low, unless hardware has triggered it. */
 static EerufStatus begin_firing(EerufHcSr04 *modules, uint8_t sensor, uint8_t health, bool by_hardware) {
     const EerufStatus status = has_line(modules, sensor);
     EerufLine *line;
@@ -1601,13 +1600,13 @@ static EerufStatus begin_firing(EerufHcSr04 *modules, uint8_t sensor, uint8_t he
     if ((line->state & PULSE) == ROSE) {
         if ((health == EERUF_HEALTH_STUCK_HIGH || by_hardware) &&
             sensor_of(modules->ring, sensor)->fired_us[0] - line->rose_us <= modules->settings->longest_hold_us) {
-            /* Nothing was heard of an earlier trigger yet. */
+            /* The module still listens after an earlier trigger. */
             if (by_hardware) return EERUF_OK;
             set_bits(line, SEEN_HIGH, SEEN_HIGH);
             show(modules->ring, sensor, HELD);
             return EERUF_DO_NOT_TRIGGER;
         }
-        /* A pulse that began and never ended: an edge got lost, and what counted as silence may have been an echo. */
+        /* A pulse began and never ended: an edge was lost, and the apparent silence may have been an echo. */
         if (health == EERUF_HEALTH_WELL) begin_again(modules->ring, sensor);
     }
     ended = end_firing(line, modules->settings->missing_after);
@@ -1646,7 +1645,7 @@ EerufStatus eeruf_hc_sr04_cannot_write(EerufHcSr04 *modules, uint8_t sensor) {
     return status;
 }
 
-/* The line of a sensor rose, by then or up to `early_us` before: it listens. */
+/* Records that a sensor's line rose at `at_us`, or up to `early_us` before: the sensor listens. */
 static void rise(EerufHcSr04 *modules, uint8_t sensor, uint32_t at_us, uint32_t early_us) {
     EerufLine *line = &modules->lines[sensor];
     set_bits(line, PULSE, ROSE);
@@ -1670,7 +1669,7 @@ OUT_OF_LINE EerufStatus eeruf_hc_sr04_edge_between(EerufHcSr04 *modules, uint8_t
     fired_us = sensor_of(modules->ring, sensor)->fired_us[0];
     since_us = latest_us - fired_us;
     early_us = latest_us - earliest_us;
-    /* Without a trigger nothing is seen through the cable. */
+    /* Without a trigger there is no crosstalk in the cable. */
     if (since_us >= HALF_TURN || (since_us < settings->deaf_us && !(line->state & SEEN_HIGH))) return EERUF_OK;
     pulse = line->state & PULSE;
     if (pulse == AWAITED) {
@@ -1683,13 +1682,13 @@ OUT_OF_LINE EerufStatus eeruf_hc_sr04_edge_between(EerufHcSr04 *modules, uint8_t
             set_bits(line, FLAW, LOST_EDGE);
         }
     } else if (pulse == ROSE && high && !has_reached(line->rose_us, fired_us)) {
-        /* The end of a pulse that began before this firing got lost: what counted as silence may have been an echo. */
+        /* The end of a pulse from before this firing was lost: the apparent silence may have been an echo. */
         set_health(line, EERUF_HEALTH_LOSES_EDGES);
         begin_again(modules->ring, sensor);
         rise(modules, sensor, latest_us, shorter(early_us, since_us));
     } else if (pulse == ROSE && !high) {
         const uint32_t width_us = latest_us - line->rose_us, least_us = width_us - shorter(early_us, width_us);
-        /* From its latest rise to its earliest fall at the least; from its earliest to its latest at the most. */
+        /* At least from the latest rise to the earliest fall; at most from the earliest rise to the latest fall. */
         const uint32_t rose_early_us = line->silent == UINT8_MAX ? line->rose_us - fired_us : 8u * line->silent;
         if (width_us < settings->shortest_us && width_us + rose_early_us < settings->shortest_us) {
             line->state = (uint8_t)((line->state & ~(PULSE | FLAW)) | AWAITED | CHATTERED);
@@ -1699,9 +1698,9 @@ OUT_OF_LINE EerufStatus eeruf_hc_sr04_edge_between(EerufHcSr04 *modules, uint8_t
             return EERUF_OK;
         }
         set_bits(line, PULSE, OVER);
-        /* The module's own time-out only if it is surely as long. */
+        /* The module's own time-out only if it is certainly as long. */
         line->width_us = least_us < settings->longest_us ? narrow(width_us) : ENDED;
-        /* A fall and a rise may have got lost since the trigger before, unless the line was seen to be high. */
+        /* A fall and a rise may have been lost since the previous trigger, unless the line was seen high. */
         if (least_us < settings->longest_us)
             hear(modules->ring, sensor, fired_us + least_us, width_us + rose_early_us - least_us,
                  latest_us + settings->shortest_us);
@@ -1711,7 +1710,7 @@ OUT_OF_LINE EerufStatus eeruf_hc_sr04_edge_between(EerufHcSr04 *modules, uint8_t
         set_bits(line, FLAW, CHATTERED);
         if (line->width_us == ENDED || latest_us - line->rose_us - line->width_us >= settings->shortest_us)
             return EERUF_OK;
-        /* A gap as short as that is a disturbance: the pulse goes on. But a silence counts once. */
+        /* So short a gap is noise: the pulse goes on. But a silence counts once. */
         set_bits(line, PULSE, ROSE);
         unhear(modules->ring, sensor);
         show(modules->ring, sensor, HELD);
@@ -1735,7 +1734,7 @@ EerufStatus eeruf_hc_sr04_look(EerufHcSr04 *modules, uint8_t sensor, bool high, 
     return EERUF_OK;
 }
 
-/* Takes in edges of a queue, of lines that the ring has: all, or those up to an instant. */
+/* Processes the edges in a queue, of lines that the ring has: all, or those up to an instant. */
 static EerufStatus drain(EerufHcSr04 *modules, EerufEdges *edges, const uint32_t *until_us) {
     EerufEdge edge;
     EerufStatus status = has_line(modules, 0);
@@ -1796,7 +1795,7 @@ uint8_t eeruf_hc_sr04_health(const EerufHcSr04 *modules, uint8_t sensor) {
 
 void eeruf_pace_event(EerufPace *pace, const EerufEvent *event) {
     const uint32_t bit = (uint32_t)1 << (event->sensor & 31);
-    /* After a reading without a time nothing is compared. One from beyond the window has its time. */
+    /* A late reading without an echo time leaves the next one nothing to compare with. */
     const EerufReading *reading = &event->u.reading;
     if (event->kind != EERUF_EVENT_READING) return;
     if (reading->kind == EERUF_READING_LATE && reading->t_echo_us == EERUF_NO_ECHO) {
@@ -1810,7 +1809,7 @@ void eeruf_pace_event(EerufPace *pace, const EerufEvent *event) {
 bool eeruf_pace_too_slow(EerufPace *pace, const EerufRing *ring, uint32_t now_us) {
     uint8_t x;
     bool slow = pace->late |= !FLOWS(ring) && ring->latest_us > 1000;
-    /* Twice in two seconds, whatever the loop does in between. */
+    /* So it answers twice in two seconds, whatever the loop does. */
     if (now_us - pace->since_us < 950000) return false;
     for (x = 0; x < ring->count; x++) slow |= eeruf_ring_is_enabled(ring, x) && !(pace->twice >> (x & 31) & 1);
     pace->since_us = now_us;
@@ -1822,17 +1821,17 @@ bool eeruf_pace_too_slow(EerufPace *pace, const EerufRing *ring, uint32_t now_us
 /* ---- Flow: the rules are in docs/explanation/flow.md ---- */
 
 #define QUIET_US 4u /* the unit of quiet */
-#define OLD ((uint32_t)1 << 29) /* a firing that says nothing of rest any more, long before instants wrap */
+#define OLD ((uint32_t)1 << 29) /* age at which firings no longer matter to rest, long before instants wrap */
 
-/* The state of a flow ring's sensor, beside DISABLED. */
+/* The state of a flow ring's sensor, in addition to DISABLED. */
 #define HAS_FIRED 0x01u
-#define AHEAD 0x02u    /* it has fired in this round, before its turn */
+#define AHEAD 0x02u    /* it has fired in this round before its turn */
 #define FOLLOWS 0x04u  /* it fires with one that has a turn */
-#define PENDING 0x08u  /* that one has fired, and it has not yet */
+#define PENDING 0x08u  /* that sensor has fired, but this one not yet */
 /* The flags of a flow ring. */
-#define MOVES 0x01u     /* at the last reading, or word of it: the dice are twice as long */
-#define TOLD 0x02u      /* how fast it moves, not long ago */
-#define ONE_AHEAD 0x04u /* a sensor is */
+#define MOVES 0x01u     /* at the last reading or report of speed: random times are doubled */
+#define TOLD 0x02u      /* the speed was reported not long ago */
+#define ONE_AHEAD 0x04u /* a sensor is AHEAD */
 #define EVERY_ECHO_STANDING 0x10u /* every echo is reported as accepted */
 #define EVERY_ECHO_MOVING 0x20u
 
@@ -1851,7 +1850,7 @@ static EerufStatus has_flow(const EerufFlowRing *flow, uint8_t sensor) {
 
 /* -- The plan -- */
 
-/* A throw for the next gap. */
+/* Draws the random time of the next gap. */
 static void throw_dice(EerufFlowRing *flow) {
     uint32_t most = (flow->dice_us << (flow->flags & MOVES)) + 1, r = flow->random, high = 0;
     uint8_t bit;
@@ -1860,7 +1859,7 @@ static void throw_dice(EerufFlowRing *flow) {
     r ^= r >> 17;
     r ^= r << 5;
     flow->random = r;
-    /* The high word of r most, without 64 bits. */
+    /* The high word of r * most, without 64-bit arithmetic. */
     for (bit = 0; bit < 32; bit++, most >>= 1) {
         const uint32_t sum = most & 1u ? high + r : high;
         high = sum >> 1 | (sum < high ? HALF_TURN : 0);
@@ -1868,7 +1867,7 @@ static void throw_dice(EerufFlowRing *flow) {
     flow->thrown_us = high;
 }
 
-/* From the last firing of any sensor until some time after another. */
+/* The time from the last firing of any sensor until `after_us` past `fired_us`; 0 if that is over. */
 static OUT_OF_LINE uint32_t since_last(const EerufRing *ring, uint32_t fired_us, uint32_t after_us) {
     const uint32_t until_us = fired_us + after_us;
     return has_reached(ring->last_fired_us, until_us) ? 0 : until_us - ring->last_fired_us;
@@ -1878,7 +1877,7 @@ static bool reports_every_echo(const EerufFlowRing *flow) {
     return (flow->flags & (flow->flags & MOVES ? EVERY_ECHO_MOVING : EVERY_ECHO_STANDING)) != 0;
 }
 
-/* The least quiet: twice as much where every echo is reported. */
+/* The least quiet, doubled while every echo is reported. */
 static uint32_t least_quiet(const EerufFlowRing *flow) {
     return shorter(reports_every_echo(flow) ? 2 * flow->least_us : flow->least_us, flow->ring.audible_us);
 }
@@ -1893,7 +1892,7 @@ static OUT_OF_LINE uint8_t line_of(const EerufFlowRing *flow, uint8_t x) {
 }
 
 /* The times from the last firing until there is quiet, and until a sensor has rested and its line is free; without the
-   dice. */
+   random time. */
 typedef struct Waits {
     uint32_t quiet_us, rested_us;
 } Waits;
@@ -1915,7 +1914,7 @@ static OUT_OF_LINE void add_waits(const EerufRing *ring, uint8_t x, Waits *waits
             if (listens) rested_us = longer(rested_us, since_last(ring, sensor->turn_us, window_us));
             continue;
         }
-        /* Sound after its window is of no account, however late it is reported. */
+        /* Sound after the window does not matter, however late it is reported. */
         if (listens)
             quiet_us = longer(quiet_us, since_last(ring, sensor->turn_us, shorter(quiet_of(flow, sensor), window_us)));
         if (line > 0 && line_of(flow, other) == line)
@@ -1931,7 +1930,7 @@ static bool fires_with(const EerufRing *ring, uint8_t x, uint8_t other) {
            !(flow_sensor(ring, other)->filter.state & DISABLED);
 }
 
-/* The waits of a sensor and of those that fire with it. */
+/* The waits of a sensor and of the sensors that fire with it. */
 static Waits waits_of(const EerufRing *ring, uint8_t x) {
     Waits waits = {0, 0};
     uint8_t other;
@@ -1941,7 +1940,7 @@ static Waits waits_of(const EerufRing *ring, uint8_t x) {
     return waits;
 }
 
-/* Gives the turn of those that fire together to the first of them. */
+/* Gives the turn of a group that fires together to its first sensor. */
 static void group(EerufRing *ring) {
     uint8_t x, other;
     for (x = 0; x < ring->count; x++) {
@@ -1961,22 +1960,22 @@ static bool is_coprime(uint8_t a, uint8_t b) {
     return a == 1;
 }
 
-/* The sensor in a place of the order, which comes after the one before it: far ones in turn, so that neighbours never
-   follow each other where the number of sensors allows it. */
+/* The sensor at a place of the order, given the sensor before it. Distant sensors alternate, so that neighbours never
+   follow each other if the number of sensors allows it. */
 static uint8_t in_order(const EerufRing *ring, uint8_t place, uint8_t before) {
     const uint8_t next = (uint8_t)(before + ((const EerufFlowRing *)(const void *)ring)->stride);
     if (ring->count == 6) return (uint8_t)(0x351420ul >> 4 * place) & 0x0fu;
     return next >= ring->count ? (uint8_t)(next - ring->count) : next;
 }
 
-/* The first place from one on whose sensor has a turn, and has not fired ahead of it. */
+/* The first place, from `place` on, whose sensor has a turn and has not fired ahead of it. */
 static uint8_t first_from(const EerufRing *ring, uint8_t place, uint8_t *sensor) {
     while (place < ring->count && (flow_sensor(ring, *sensor)->filter.state & (DISABLED | AHEAD | FOLLOWS)) != 0)
         *sensor = in_order(ring, ++place, *sensor);
     return place;
 }
 
-/* Decides who fires next, and when. */
+/* Decides which sensor fires next, and when. */
 static OUT_OF_LINE void decide(EerufRing *ring) {
     const EerufFlowRing *flow = flow_of(ring);
     Waits waits;
@@ -1988,7 +1987,7 @@ static OUT_OF_LINE void decide(EerufRing *ring) {
     ring->next = NOBODY;
     if (!ring->paused) place = first_from(ring, ring->following, &sensor);
     if (place == ring->count) {
-        /* The round ends at once, and if nobody fires after the time for which one would rest. */
+        /* The round ends at once or, if no sensor can fire, after the rest time. */
         for (x = 0; x < ring->count && (flow_sensor(ring, x)->filter.state & DISABLED);) x++;
         if (ring->paused || x == ring->count) ring->due_us += flow->rest_us;
         return;
@@ -1996,7 +1995,7 @@ static OUT_OF_LINE void decide(EerufRing *ring) {
     waits = waits_of(ring, sensor);
     ring->next = sensor;
     ring->due_us += longer(waits.quiet_us, waits.rested_us) + flow->thrown_us;
-    /* Nobody is passed over twice: only while no other sensor has fired ahead. */
+    /* No sensor is passed over twice: only one may fire ahead in a round. */
     while (waits.rested_us > waits.quiet_us && !(flow->flags & ONE_AHEAD)) {
         sensor = in_order(ring, ++place, sensor);
         place = first_from(ring, place, &sensor);
@@ -2008,7 +2007,7 @@ static OUT_OF_LINE void decide(EerufRing *ring) {
     }
 }
 
-/* As decide, by what is told only now: nothing is due sooner than that, unless it was. */
+/* Decides on news that came only now: nothing becomes due before `now_us`, unless it was already. */
 static OUT_OF_LINE void decide_from(EerufRing *ring, uint32_t now_us) {
     uint32_t due_us = ring->due_us;
     decide(ring);
@@ -2016,7 +2015,7 @@ static OUT_OF_LINE void decide_from(EerufRing *ring, uint32_t now_us) {
     if (has_reached(due_us, ring->due_us)) ring->due_us = due_us;
 }
 
-/* By what tells no time nothing is due sooner than it was: that might be long ago. */
+/* Decides after a call without a time: nothing becomes due sooner, since that instant might be long past. */
 static void decide_no_sooner(EerufRing *ring) {
     decide_from(ring, ring->due_us);
 }
@@ -2060,7 +2059,7 @@ static void end_round(EerufRing *ring, uint32_t now_us) {
         EerufFlowSensor *sensor = flow_sensor(ring, x);
         if (now_us - sensor->turn_us > OLD) sensor->filter.state &= (uint8_t)~HAS_FIRED;
     }
-    /* Nobody fires: rounds go on. */
+    /* No sensor fires, but rounds go on. */
     if (now_us - ring->last_fired_us >= flow_of(ring)->rest_us) ring->last_fired_us = now_us;
     decide_no_sooner(ring);
 }
@@ -2071,12 +2070,12 @@ static void restart_flow(EerufRing *ring, uint32_t now_us) {
     begin_round(ring);
     for (x = 0; x < ring->count; x++) {
         EerufFlowSensor *sensor = flow_sensor(ring, x);
-        /* A clock that has jumped says nothing of when they fired. */
+        /* After a jump of the clock, it is unknown when they fired. */
         if (now_us - sensor->turn_us > flow->rest_us) sensor->filter.state &= (uint8_t)~HAS_FIRED;
         sensor->filter.state &= (uint8_t)~PENDING;
         sensor->doubt = flow->first;
     }
-    /* Sound from before dies away. */
+    /* Earlier sound dies away first. */
     ring->last_fired_us = now_us + ring->audible_us;
     decide(ring);
 }
@@ -2089,17 +2088,17 @@ static uint32_t horizon_of_flow(const EerufRing *ring) {
 
 /* -- Motion -- */
 
-#define TOLD_FOR 500000u /* without a word for as long the top speed holds */
-#define SENT_BEFORE_US 250000u /* sound that is heard was sent no longer ago */
-#define LONGEST_US (((uint32_t)1 << 20) - 1) /* what is older is believed no more */
+#define TOLD_FOR 500000u /* time after a report of speed until the top speed is assumed */
+#define SENT_BEFORE_US 250000u /* greatest age of audible sound */
+#define LONGEST_US (((uint32_t)1 << 20) - 1) /* older beliefs are dropped */
 
-/* Change of a good reading at most, in 1/16 us per 1,024 us: 2 v / c at 331 m/s, the slowest sound that a robot
-   meets, and 6 % more, since at 3.6 m/s sound is sent so much farther apart than it is heard; rounded up. */
+/* Greatest change of a good reading, in 1/16 us per 1,024 us, rounded up: 2 v / c at 331 m/s, the slowest sound that a
+   robot meets, plus 6 %, since at 3.6 m/s intervals between sendings exceed those between hearings by that. */
 static uint16_t rate_of(uint32_t speed_mm_s) {
     return (uint16_t)((shorter(speed_mm_s, 39000) * 6881 + 65535) >> 16);
 }
 
-/* The rate at an instant, which is not long before the last word. */
+/* The rate at an instant not long before the last report of speed. */
 static OUT_OF_LINE uint16_t rate_at(EerufFlowRing *flow, uint32_t now_us) {
     const uint32_t silent_us = now_us - flow->told_us;
     if ((flow->flags & TOLD) && silent_us > TOLD_FOR && silent_us < HALF_TURN) {
@@ -2113,8 +2112,8 @@ static OUT_OF_LINE uint16_t larger16(uint16_t one, uint16_t other) {
     return one > other ? one : other;
 }
 
-/* The greatest rate while sound could be sent that is heard at an instant, which is not long before the last word. Two
-   spans, neither of them much shorter than sound is heard. */
+/* The greatest rate while sound heard at `now_us` could have been sent, not long before the last report. It covers two
+   spans, neither much shorter than sound is audible. */
 static uint16_t recent_rate(EerufFlowRing *flow, uint32_t now_us) {
     const uint16_t rate = rate_at(flow, now_us);
     const uint32_t span_us = now_us - flow->since_us;
@@ -2132,7 +2131,7 @@ static uint32_t grow(uint16_t rate, uint32_t time_us) {
     return rate * shorter(time_us, LONGEST_US) >> 14;
 }
 
-/* Belief starts over with the hold that it has on a robot that begins to move, or stops. */
+/* Resets the hold of each belief when the robot starts to move or stops. */
 static void set_moves(EerufFlowRing *flow, bool moves) {
     uint8_t x;
     if (moves == ((flow->flags & MOVES) != 0)) return;
@@ -2147,13 +2146,13 @@ EerufStatus eeruf_flow_moving(EerufFlowRing *flow, uint32_t speed_mm_s, uint32_t
     uint8_t x;
     if (status != EERUF_OK) return status;
     if (!has_reached(now_us, flow->since_us)) {
-        /* The first word of a clock in its upper half, or a clock that has jumped. */
+        /* The first report of a clock in its upper half, or a clock that has jumped. */
         flow->greatest[0] = larger16(flow->greatest[0], flow->greatest[1]);
         flow->greatest[1] = 0;
         flow->since_us = now_us;
     }
     rate = recent_rate(flow, now_us);
-    /* A wall is 0.5 m from the centre about which the robot turns. */
+    /* A sensor is assumed 0.5 m from the robot's centre of rotation. */
     flow->rate = rate_of(add32(speed_mm_s, turn_mrad_s / 2));
     flow->told_us = now_us;
     flow->flags |= TOLD;
@@ -2166,10 +2165,10 @@ EerufStatus eeruf_flow_moving(EerufFlowRing *flow, uint32_t speed_mm_s, uint32_t
     return EERUF_OK;
 }
 
-/* -- The judge: what fits what is believed, and what two readings in a row say that nothing foreign explains -- */
+/* -- The judge: accepts what fits the belief, or two readings in a row that nothing foreign explains -- */
 
-#define TOO_FAR_US 1000u /* a belief that has missed readings ends where a good one may have changed by more */
-#define SILENCE (EERUF_NO_ECHO - 1u) /* with a witness; EERUF_NO_ECHO is nothing to compare with, or no belief */
+#define TOO_FAR_US 1000u /* a belief that has missed readings ends once a good one may have changed by more */
+#define SILENCE (EERUF_NO_ECHO - 1u) /* with a witness; EERUF_NO_ECHO means no reading or no belief */
 
 static void forget_belief(EerufFlowSensor *sensor) {
     sensor->filter.known_us = sensor->believed_us = EERUF_NO_ECHO;
@@ -2182,8 +2181,8 @@ static void miss(EerufFlowSensor *sensor) {
     if (sensor->filter.age < EERUF_NEVER - 1u) sensor->filter.age++;
 }
 
-/* The change that a good reading may show since the one before, which the change since the belief grows by. What it
-   heard before was sent a while before, and so will be what it hears next. */
+/* Returns how much a good reading may have changed since the one before, and adds it to the change since the belief.
+   Sound is heard some time after it was sent, so the rate of that time counts too. */
 static uint32_t grow_since(EerufFlowRing *flow, EerufFlowSensor *sensor, uint32_t before_us) {
     const uint32_t fired_us = sensor->fired_us[0];
     const uint16_t rate = rate_at(flow, fired_us), recent = recent_rate(flow, fired_us);
@@ -2201,7 +2200,7 @@ static bool fits(const EerufFlowRing *flow, const EerufFlowSensor *sensor, uint3
     return apart(t_echo_us, sensor->believed_us) <= (uint32_t)flow->near_us + sensor->grown_us;
 }
 
-/* True if sound of any firing but a sensor's last could be the echo that it heard after that one. */
+/* True if the echo that a sensor heard after its last firing could be the sound of any other firing. */
 static bool is_masked(const EerufRing *ring, uint8_t receiver, uint32_t t_echo_us) {
     const EerufFlowSensor *own = flow_sensor(ring, receiver);
     const uint32_t heard_us = own->fired_us[0] + t_echo_us;
@@ -2219,7 +2218,7 @@ static void give_less_quiet(const EerufFlowRing *flow, EerufFlowSensor *sensor) 
     sensor->doubt = (uint16_t)(sensor->doubt > flow->down + least ? sensor->doubt - flow->down : least);
 }
 
-/* An echo, or silence with a witness, that may have changed by so much since the one before. */
+/* Judges an echo, or silence with a witness, that may have changed by `span_us` since the reading before. */
 static void weigh(EerufRing *ring, uint8_t x, uint32_t span_us, EerufReading *reading) {
     EerufFlowRing *flow = flow_of(ring);
     EerufFlowSensor *sensor = flow_sensor(ring, x);
@@ -2228,9 +2227,9 @@ static void weigh(EerufRing *ring, uint8_t x, uint32_t span_us, EerufReading *re
     const uint32_t t_echo_us = is_echo ? reading->t_echo_us : SILENCE, last_us = filter->known_us;
     const bool believes = sensor->believed_us != EERUF_NO_ECHO, known = fits(flow, sensor, t_echo_us);
     const bool is_far = believes && !known && (!is_echo || t_echo_us > sensor->believed_us);
-    /* The first silence in a row is no belief yet, but a robot that moves has left behind what was there. */
+    /* A first silence is not a belief yet, but a moving robot has left the old obstacle behind. */
     const bool clears = last_us == SILENCE || known || !stood;
-    /* Readings of a robot that moves differ anyway: quiet that did not help twice is let go, then tried again. */
+    /* Readings of a moving robot differ anyway: quiet that did not help twice is dropped, then tried again. */
     const bool lets_go = !stood && !reports_every_echo(flow) && (sensor->missed & 2u) != 0;
     bool ok = known || !is_echo, held_back = false;
     if (!ok && last_us < SILENCE && apart(t_echo_us, last_us) <= t_delta_of(ring, x) + span_us) {
@@ -2253,7 +2252,7 @@ static void weigh(EerufRing *ring, uint8_t x, uint32_t span_us, EerufReading *re
     if (!ok) {
         miss(sensor);
         if (!is_echo || is_far) return;
-        /* Quiet does not help against what the ring did not fire. */
+        /* Quiet does not help against sound that the ring did not fire. */
         if (lets_go || !is_masked(ring, x, t_echo_us))
             give_less_quiet(flow, sensor);
         else
@@ -2293,14 +2292,14 @@ static void judge(EerufRing *ring, uint8_t x, EerufReading *reading) {
     reading->age = sensor->filter.age = 0;
 }
 
-/* A sensor's last firing was at another instant. */
+/* Corrects the instant of a sensor's last firing. */
 static void move_turn(EerufRing *ring, EerufFlowSensor *sensor, uint32_t at_us) {
     if (ring->last_fired_us == sensor->turn_us || has_reached(at_us, ring->last_fired_us)) ring->last_fired_us = at_us;
     sensor->turn_us = at_us;
 }
 
-/* The hook of a flow ring: what is known of a sensor is forgotten; its quiet begins again; or its silence counts, the time
-   since whose firing before has been counted already. */
+/* The hook of a flow ring: forgets what is known of a sensor, resets its quiet, or counts its silence (the time since
+   the previous firing was counted before). */
 static void change_flow(EerufRing *ring, uint8_t x, uint32_t what) {
     EerufFlowSensor *sensor = flow_sensor(ring, x);
     if (what == FORGETS) {
@@ -2314,13 +2313,13 @@ static void change_flow(EerufRing *ring, uint8_t x, uint32_t what) {
     }
 }
 
-/* A sensor fired so much later than it was polled for, modulo 2^32. */
+/* Handles a sensor that fired `later_us` after its poll, modulo 2^32. */
 static void correct_flow(EerufRing *ring, uint8_t x, uint32_t later_us) {
     EerufFlowSensor *sensor = flow_sensor(ring, x);
     const uint32_t at_us = sensor->fired_us[0];
     const bool listens = (sensor->filter.flags & LISTENING) != 0;
     if (!listens && sensor->filter.known_us < SILENCE) {
-        /* The reading is with the judge already, and what is believed may be an echo of that firing. */
+        /* The reading was already judged, and the belief may be an echo of that firing. */
         (void)shift(&sensor->filter.known_us, later_us);
         if (sensor->missed == 0) (void)shift(&sensor->believed_us, later_us);
     }
@@ -2332,9 +2331,9 @@ static void correct_flow(EerufRing *ring, uint8_t x, uint32_t later_us) {
 
 /* -- The ring -- */
 
-#define LONGEST_REST_US 4000000u /* nor does a sensor listen for longer */
+#define LONGEST_REST_US 4000000u /* also the longest window */
 
-/* True if a time is too short, or longer than `most_us`. */
+/* True if a time is shorter than `least_us` or longer than `most_us`. */
 static IN_LINE bool is_outside(uint32_t time_us, uint32_t least_us, uint32_t most_us) {
     return time_us < least_us || time_us > most_us;
 }
@@ -2435,7 +2434,7 @@ EerufStatus eeruf_flow_pause(EerufFlowRing *flow, bool paused) {
     if (status != EERUF_OK) return status;
     flow->ring.paused = paused;
     for (x = 0; x < flow->ring.count && !paused; x++) {
-        /* Belief stays, but no reading is compared with one of before. */
+        /* Beliefs stay, but no reading is compared with one from before. */
         EerufFlowSensor *sensor = flow_sensor(&flow->ring, x);
         sensor->filter.known_us = EERUF_NO_ECHO;
         if (sensor->missed == 0) sensor->missed = 1;

@@ -1,7 +1,7 @@
 /*
  * Messages of a ring to an autopilot over a serial line, in MAVLink 2: OBSTACLE_DISTANCE of the whole ring,
- * DISTANCE_SENSOR of sensors that a named rotation stands for, and HEARTBEAT, SYS_STATUS and STATUSTEXT of sensors that
- * fail. What autopilots make of it: docs/how-to/autopilots.md.
+ * DISTANCE_SENSOR of sensors with a named rotation, and HEARTBEAT, SYS_STATUS and STATUSTEXT about failing sensors. How
+ * autopilots use them: docs/how-to/autopilots.md.
  *
  *     static const EerufMavlinkPlace PLACES[] = {{0, 0}, {90, 2}, {180, 4}, {270, 6}};
  *     EerufMavlink link = EERUF_MAVLINK(PLACES, 4, 15, 2, 400);
@@ -10,8 +10,8 @@
  *         size = eeruf_mavlink_take(&link, &watch, now, room, &bytes);
  *         write(bytes, size);                                  // as many as there is room for: nothing waits
  *
- * Until the vehicle arms, a sensor that does not answer holds back all distances, so that the check before arming fails;
- * then its sectors are 65535. Messages: https://mavlink.io/en/messages/common.html. C99 to C++20.
+ * Until the vehicle arms, a sensor that does not answer holds back all distances, so that the pre-arm check fails;
+ * after that, its sectors are 65535. Messages: https://mavlink.io/en/messages/common.html. C99 to C++20.
  */
 #ifndef EERUF_MAVLINK_H
 #define EERUF_MAVLINK_H
@@ -26,13 +26,13 @@
 #endif
 #define EERUF_MAVLINK_COMPONENT 196
 
-/* The time from one message to the next: at 57,600 baud the longest takes 31 ms. */
+/* The time between two messages; at 57,600 baud the longest takes 31 ms. */
 #define EERUF_MAVLINK_PACE_US 20000u
 /* Time after which an unconfirmed state counts as unknown. */
 #define EERUF_MAVLINK_OLD_US 1000000u
-#define EERUF_MAVLINK_HEARTBEAT 50 /* the byte by which sender and receiver know that they mean the same fields */
+#define EERUF_MAVLINK_HEARTBEAT 50 /* the CRC_EXTRA byte, which depends on the message's fields */
 
-/* The direction of a sensor, clockwise from ahead, and its MAV_SENSOR_ORIENTATION, or 255. */
+/* The direction of a sensor, clockwise from straight ahead, and its MAV_SENSOR_ORIENTATION, or 255. */
 typedef struct EerufMavlinkPlace {
     uint16_t yaw_deg;
     uint8_t rotation;
@@ -57,7 +57,7 @@ static inline uint16_t eeruf_mavlink_crc(uint16_t crc, uint8_t byte) {
     return (uint16_t)((crc >> 8) ^ (byte << 8) ^ (byte << 3) ^ (byte >> 4));
 }
 
-/* Takes in a byte of the autopilot, whose HEARTBEAT, of MAVLink 1 or 2, says whether the vehicle is armed. */
+/* Processes a byte from the autopilot, whose HEARTBEAT, of MAVLink 1 or 2, tells whether the vehicle is armed. */
 static inline void eeruf_mavlink_hear(EerufMavlink *link, uint8_t byte) {
     uint8_t is_first;
     memmove(link->heard, link->heard + 1, sizeof link->heard - 1);
@@ -69,7 +69,7 @@ static inline void eeruf_mavlink_hear(EerufMavlink *link, uint8_t byte) {
         uint8_t at, number = frame[header - 1], armed;
         if (!is_first) number = (uint8_t)(number | frame[7] | frame[8]);
         if (frame[0] != (is_first ? 0xfe : 0xfd) || frame[1] != 9 || number != 0) continue;
-        /* Others have no autopilot: 8. */
+        /* Other components have no autopilot: 8. */
         if (frame[is_first ? 3 : 5] != EERUF_MAVLINK_SYSTEM || frame[header + 5] == 8) continue;
         for (at = 1; at < header + 9; at++) crc = eeruf_mavlink_crc(crc, frame[at]);
         crc = eeruf_mavlink_crc(crc, EERUF_MAVLINK_HEARTBEAT);
@@ -94,7 +94,7 @@ static inline void eeruf_mavlink_begin(EerufMavlink *link, uint16_t message) {
     eeruf_mavlink_put(link, message, 3);
 }
 
-/* Zeros at the payload's end are left out. */
+/* Ends a message; zeros at the end of the payload are left out. */
 static inline void eeruf_mavlink_end(EerufMavlink *link, uint8_t extra) {
     uint16_t crc = 0xffff;
     uint8_t at;
@@ -104,7 +104,7 @@ static inline void eeruf_mavlink_end(EerufMavlink *link, uint8_t extra) {
     eeruf_mavlink_put(link, eeruf_mavlink_crc(crc, extra), 2);
 }
 
-/* The view of a sensor, in centimetres: more than the maximum for nothing in range, 65535 for unknown. */
+/* The distance that a sensor sees, in centimetres: above the maximum for nothing in range, 65535 for unknown. */
 static inline uint16_t eeruf_mavlink_cm(const EerufMavlink *link, const EerufWatch *watch, uint8_t sensor,
                                         uint8_t *unanswered) {
     EerufState state = {0, 0, EERUF_STATE_UNKNOWN, 0, 0};
@@ -118,18 +118,18 @@ static inline uint16_t eeruf_mavlink_cm(const EerufMavlink *link, const EerufWat
     return cm < link->min_cm ? link->min_cm : (uint16_t)cm;
 }
 
-/* Sends the nearest obstacle of each sector of 5 degrees; without one, unknown if any sensor there is, else free. */
+/* Makes a message of the nearest obstacle in each 5-degree sector; without one, unknown if any sensor is, else free. */
 static inline void eeruf_mavlink_obstacles(EerufMavlink *link, const EerufWatch *watch) {
     uint16_t sectors[72] = {0};
     uint8_t sector, x, unanswered;
     for (x = 0; x < link->sensors; x++) {
         const uint16_t cm = eeruf_mavlink_cm(link, watch, x, &unanswered);
         for (sector = 0; sector < 72; sector++) {
-            /* From 20 degrees to the left on, where one of ArduPilot's faces begins. */
+            /* Starting 20 degrees to the left, where one of ArduPilot's faces begins. */
             const uint16_t apart = (uint16_t)((700u + 5u * sector - link->places[x].yaw_deg) % 360u);
             uint16_t *held = &sectors[sector];
             if ((apart < 180 ? apart : 360u - apart) > link->half_view_deg) continue;
-            /* An obstacle before unknown before free, which is the order of the numbers but for the last two. */
+            /* Obstacles come before unknown before free: the order of the numbers but for the last two. */
             if (*held == 0 || (cm <= link->max_cm ? cm < *held : *held > link->max_cm && cm > *held)) *held = cm;
         }
     }
@@ -159,7 +159,7 @@ static inline void eeruf_mavlink_distance(EerufMavlink *link, uint8_t sensor, ui
     eeruf_mavlink_put(link, 255, 1);             /* covariance unknown */
     eeruf_mavlink_put(link, 0x3f051eb8u, 4);     /* 0.52 rad */
     eeruf_mavlink_put(link, 0x3f051eb8u, 4);
-    eeruf_mavlink_put(link, 0, 16);              /* a quaternion is for rotations without a name */
+    eeruf_mavlink_put(link, 0, 16);              /* the quaternion is for custom rotations */
     eeruf_mavlink_put(link, 100, 1);
     eeruf_mavlink_end(link, 85);
 }
@@ -192,7 +192,7 @@ static inline void eeruf_mavlink_next(EerufMavlink *link, const EerufWatch *watc
         eeruf_mavlink_begin(link, 0);
         eeruf_mavlink_put(link, 0, 4);
         eeruf_mavlink_put(link, 18 | 8 << 8, 3); /* an onboard controller without autopilot */
-        eeruf_mavlink_put(link, link->failed ? 5 : 4, 1); /* critical, active */
+        eeruf_mavlink_put(link, link->failed ? 5 : 4, 1); /* critical, or active */
         eeruf_mavlink_put(link, 3, 1);
         eeruf_mavlink_end(link, EERUF_MAVLINK_HEARTBEAT);
     } else if (link->owes_status) {
@@ -224,8 +224,8 @@ static inline void eeruf_mavlink_next(EerufMavlink *link, const EerufWatch *watc
     }
 }
 
-/* Gives the bytes to write now, at most as many as there is room for; they stay in place until the next call. The
-   watch takes in the events of the ring. */
+/* Returns the bytes to write now, at most as many as there is room for; they stay valid until the next call. Pass the
+   events of the ring to the watch. */
 static inline size_t eeruf_mavlink_take(EerufMavlink *link, const EerufWatch *watch, uint32_t now_us, size_t room,
                                         const uint8_t **bytes) {
     size_t size;

@@ -10,7 +10,7 @@
  *             size_t size = eeruf_serial_event(&line, &ring, &modules, &event, now, frame);
  *             if (size > 0) write(frame, size);
  *
- * C99 to C++20. Frames of a period's end hold a byte for each sensor; EERUF_FRAME is enough for all 64.
+ * C99 to C++20. Frames at the end of a period hold a byte for each sensor; EERUF_FRAME is enough for all 64.
  */
 #ifndef EERUF_SERIAL_H
 #define EERUF_SERIAL_H
@@ -21,7 +21,7 @@
 #include <util/crc16.h> /* the same check sum in 20 cycles a byte */
 #endif
 
-/* The longest frame: content of 74 bytes, two of check sum, two of packing. */
+/* The longest frame: 74 bytes of content, two of check sum, two of packing. */
 #ifndef EERUF_FRAME
 #define EERUF_FRAME 78
 #endif
@@ -34,14 +34,14 @@ typedef struct EerufSerial {
 } EerufSerial;
 #define EERUF_SERIAL(late_us, sensors, clock) {late_us, clock, 0, sensors, 0}
 
-/* A frame under way: content from frame[1] on, to be packed in place. Not for the caller. */
+/* A frame in progress: content from bytes[1] on, packed in place. Not for the caller. */
 typedef struct EerufFrame {
     uint8_t *bytes;
     uint16_t crc;
     uint8_t length, zero;
 } EerufFrame;
 
-/* COBS: a zero becomes the distance to the next one; no content is as long as 254 bytes. */
+/* Packs a byte by COBS: a zero becomes the distance to the next one; contents are shorter than 254 bytes. */
 static inline void eeruf_frame_pack(EerufFrame *frame, uint8_t byte) {
     frame->length++;
     frame->bytes[frame->length] = byte;
@@ -51,7 +51,7 @@ static inline void eeruf_frame_pack(EerufFrame *frame, uint8_t byte) {
     }
 }
 
-/* CRC-16/IBM-3740: polynomial 0x1021, begun at 0xFFFF. */
+/* Adds a number, with its CRC-16/IBM-3740: polynomial 0x1021, initial value 0xFFFF. */
 static inline void eeruf_frame_put(EerufFrame *frame, uint32_t value, uint8_t bytes) {
     for (; bytes > 0; bytes--, value >>= 8) {
 #ifdef __AVR__
@@ -82,8 +82,8 @@ static inline size_t eeruf_frame_end(EerufFrame *frame) {
     return (size_t)frame->length + 1;
 }
 
-/* The frame that an event makes, and its size; 0 if it makes none. Hand in every event, with the `now_us` of its poll.
-   `modules` may be null where the sensors' health is unknown. */
+/* Makes the frame of an event and returns its size; 0 if there is none. Pass every event, with the `now_us` of its
+   poll. `modules` may be null if the sensors' health is unknown. */
 static inline size_t eeruf_serial_event(EerufSerial *line, const EerufRing *ring, const EerufHcSr04 *modules,
                                         const EerufEvent *event, uint32_t now_us, uint8_t *bytes) {
     EerufFrame frame;
@@ -92,7 +92,7 @@ static inline size_t eeruf_serial_event(EerufSerial *line, const EerufRing *ring
         const uint32_t late_us = now_us - event->u.due_us;
         const char *letter = line->clock;
         if (event->sensor < line->sensors) line->late_us[event->sensor] = (uint16_t)(late_us > 65535 ? 65535 : late_us);
-        /* Greets now and then, for late listeners. */
+        /* Sends a greeting now and then, for late listeners. */
         if (line->firings++ % 128 != 0) return 0;
         frame = eeruf_frame_begin(line, 0, bytes);
         eeruf_frame_put(&frame, line->sensors, 1);

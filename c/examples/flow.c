@@ -1,5 +1,5 @@
-/* Twelve sensors that fire by flow, as a firmware's main loop has them; what it takes of flash and RAM is in
-   docs/explanation/flow.md. CLOCK_US stands for a free-running timer, fire and use for what the board does. */
+/* Twelve sensors that fire by flow, in the main loop of a firmware; docs/explanation/flow.md says how much flash and
+   RAM it takes. CLOCK_US stands for a free-running timer, fire and use for functions of the board. */
 #include "eeruf.h"
 
 #define SENSORS 12
@@ -17,7 +17,7 @@ static void use(uint32_t t_echo_us) {
     distance_mm = eeruf_distance_mm(t_echo_us, EERUF_SOUND_20C);
 }
 
-/* From the interrupt of an echo line, or after it. */
+/* Called from the interrupt of an echo line, or after it. */
 static void heard(uint8_t sensor) {
     (void)eeruf_ring_echo(&ring.ring, sensor, CLOCK_US);
 }

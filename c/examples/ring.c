@@ -1,5 +1,5 @@
-/* A ring of eight sensors by a table that `eeruf design rings/hc-sr04-8.toml --emit c` wrote. `now_us`, `sleep_until_us`
-   and the trigger are the board's; here time jumps from deadline to deadline, and a wall stands 2 m in front of each
+/* A ring of eight sensors with a table from `eeruf design rings/hc-sr04-8.toml --emit c`. `now_us`, `sleep_until_us`
+   and the trigger depend on the board; here time jumps from deadline to deadline, and a wall is 2 m in front of each
    sensor. */
 #include "eeruf.h"
 
@@ -20,7 +20,7 @@ static void sleep_until_us(uint32_t deadline_us) {
 
 int main(void) {
     const EerufConfig config = EERUF_CONFIG;
-    EerufStatus status = eeruf_schedule_check(&eeruf_schedule); /* a table of your own hand is worth a check */
+    EerufStatus status = eeruf_schedule_check(&eeruf_schedule); /* worthwhile for a table written by hand */
     unsigned accepted = 0, last_mm = 0;
     if (status == EERUF_OK)
         status = eeruf_ring_init(&ring, sizeof ring, sensors, sizeof sensors, &eeruf_schedule, &config, now_us());
@@ -32,7 +32,7 @@ int main(void) {
         EerufEvent event;
         while (eeruf_ring_poll(&ring, now_us(), &event) == EERUF_EVENT) {
             if (event.kind == EERUF_EVENT_FIRE) {
-                /* Here its trigger is raised; later its line says: */
+                /* Raise the trigger here; later the echo line reports: */
                 (void)eeruf_ring_echo(&ring, event.sensor, now_us() + 12000);
             } else if (event.kind == EERUF_EVENT_READING && event.u.reading.kind == EERUF_READING_ACCEPTED) {
                 last_mm = (unsigned)eeruf_distance_mm(event.u.reading.t_echo_us, EERUF_SOUND_20C);

@@ -1,24 +1,24 @@
 """eeruf in MicroPython: rings of ultrasonic sensors that reject each other's sound (Borenstein and Koren, 1995). README.md shows how.
 
-Times are microseconds, sensors are counted from 0. `FlowRing` does, event by event, what the Rust crate eeruf-core does with a flow
-ring; it needs no hardware. Rules: docs/explanation/flow.md. Licence: MIT OR Apache-2.0."""
+Times are microseconds, sensors are counted from 0. `FlowRing` has, event by event, the behaviour of a flow ring in the Rust crate
+eeruf-core; it needs no hardware. Rules: docs/explanation/flow.md. Licence: MIT OR Apache-2.0."""
 
-NOBODY, NEVER = 255, 0xFFFF  # never: the age of a sensor none of whose readings was ever accepted
+NOBODY, NEVER = 255, 0xFFFF  # NEVER: the age of a sensor that has never had a reading accepted
 FIRST, ACCEPTED, REJECTED, REPEATED, NO_ECHO, CLEAR, TOO_EARLY, LATE, STUCK, _, AMBIGUOUS, UNANSWERED = range(12)
-NEVER_FREE, NEEDS_ANSWER, TRUSTED = range(3)  # silence: neither free space nor a fault; a fault, UNANSWERED; free space once repeated
-HISTORY = "history"  # explains an ambiguous reading if a firing that could have been heard is forgotten
-BY_MOTION, EVERY_ECHO, TWO_IN_A_ROW = range(3)  # by motion: every echo while the robot moves and is alone, else two in a row
-FIRE, READING, PERIOD = range(3)  # what an event is; then of a firing and a reading the sensor, and the phase, which is 0
-# Places in a reading; a time without echo is None. `explained_by`: the sensor whose sound could be both echoes, or HISTORY.
+NEVER_FREE, NEEDS_ANSWER, TRUSTED = range(3)  # silence is: neither free space nor a fault; a fault, UNANSWERED; free space if repeated
+HISTORY = "history"  # explains an ambiguous reading that a forgotten firing could explain
+BY_MOTION, EVERY_ECHO, TWO_IN_A_ROW = range(3)  # BY_MOTION: every echo while the robot moves alone, else two in a row
+FIRE, READING, PERIOD = range(3)  # kinds of events; then come the sensor (of a firing or reading) and the phase, always 0
+# Indices of a reading; a time without echo is None. `explained_by`: the sensor whose sound could be both echoes, or HISTORY.
 SENSOR, PHASE, KIND, T_ECHO, PREVIOUS, AGE, EXPLAINED_BY = 1, 2, 4, 5, 6, 7, 8
 _SHOWS = "unsure obstacle rejected unsure unsure clear too_close unsure unanswered - ambiguous unanswered".split()
 _WHYS = ("no_firing", "unsure", "rejected", "ambiguous", "no_witness")
-# The unit of quiet; by how much a belief that missed readings may change; how long a word of motion holds; how long sound is heard.
+# The unit of quiet; the most that a belief that missed readings may change; how long a reported speed holds; the longest quiet.
 _UNIT_US, _TOO_FAR_US, _TOLD_US, _HEARD_US = 4, 1000, 500000, 250000
-_SILENCE = 1 << 29  # the echo time of silence with a witness: later than all, near none
-# It has shown of its firing that it listened; nothing; that its line is high, whose fall makes silence count; that it was before.
+_SILENCE = 1 << 29  # the echo time of silence with a witness: later than any echo
+# Evidence of a firing: the sensor listened; nothing; its line is high, and silence counts once it falls; it was high before.
 _LISTENED, _NOTHING, _HELD, _STUCK = range(4)
-_MOST_OFF_US, _WIDE = 300, 510  # the most that an echo may be off, and what stands for more
+_MOST_OFF_US, _WIDE = 300, 510  # the greatest uncertainty of an echo, and the mark for more
 
 
 def _check(name, value, least, most):
@@ -35,11 +35,11 @@ def _seed_of_chip():
     return max(seed, 1)
 
 
-def _rate(speed_mm_s):  # by how much a good reading may change, in 1/16 us per 1,024 us: 2 v / c at 331 m/s and 6 % more
+def _rate(speed_mm_s):  # the most that a good reading changes, in 1/16 us per 1,024 us: 2 v / c at 331 m/s plus 6 %
     return (min(speed_mm_s, 39000) * 6881 + 65535) >> 16
 
 
-def _in_order(sensors):  # far ones in turn: neighbours hear each other loudest
+def _in_order(sensors):  # alternates distant sensors: neighbours hear each other loudest
     if sensors == 6:
         return b"\x00\x02\x04\x01\x05\x03"
     stride = 3 if sensors > 4 else 1
@@ -49,7 +49,7 @@ def _in_order(sensors):  # far ones in turn: neighbours hear each other loudest
 
 
 class Flow:
-    """Settings of a ring of sensors that listen for `window_us` after their firing; README.md has them all in a table."""
+    """Settings of a ring of sensors that listen for `window_us` after their firing; README.md has a table of all."""
 
     def __init__(
         self, sensors, window_us, blanking_us=0, least_us=None, most_us=None, rest_us=60000, dice_us=2000, seed=None, t_delta_us=80,
@@ -57,7 +57,7 @@ class Flow:
     ):  # fmt: skip
         seed = _seed_of_chip() if seed is None else seed
         self.min_refire_us = max(rest_us, window_us)
-        if most_us is None:  # two ninths of the window for the tail, but its own stale echoes are never foreign
+        if most_us is None:  # two ninths of the window for the tail, but never so long that own stale echoes count as foreign
             most_us = min(window_us + window_us // 9 * 2, self.min_refire_us + blanking_us - 1)
         least_us = most_us // 11 * 2 if least_us is None else least_us
         narrow = min(window_us, 1 << 16) - 1
@@ -76,7 +76,7 @@ class Flow:
 class _Sensor:
     def __init__(self, now_us, long_ago_us, doubt):
         self.period, self.age, self.enabled = 0, NEVER, True
-        # The quiet that it needs, in units; when it fired, if it has; it has fired in this round before its turn.
+        # The quiet that it needs, in units; when and whether it has fired; whether it has fired in this round before its turn.
         self.doubt, self.fired_us, self.has_fired, self.ahead = doubt, now_us, False, False
         self.seen_us = self.by = None
         self.unsee(now_us)
@@ -87,23 +87,23 @@ class _Sensor:
 
     def see(self, kind, echo_us, explained_by, now_us):
         if kind == LATE and echo_us is not None:
-            return  # after the reading of its firing
+            return  # the firing has already had its reading
         shows, known = "no_witness" if kind == NO_ECHO and self.no_echo else _SHOWS[kind], self.shows
         self.no_echo = kind == NO_ECHO
         if shows in _WHYS and known == "obstacle" and not self.doubted:
-            self.doubted = True  # one echo may be missed, or another's heard
+            self.doubted = True  # one echo may be missed, or a foreign one heard
             return
         self.shows, self.by, self.doubted = shows, explained_by, False
-        if not (shows == known == "unanswered" or shows in _WHYS and known in _WHYS):  # else the same goes on
+        if not (shows == known == "unanswered" or shows in _WHYS and known in _WHYS):  # else the state has not changed
             self.seen_us, self.seen_at = echo_us, now_us
 
     def forget(self):
-        # The last reading, what is believed; firings and change of a good reading since; the greatest rate; contradictions it outlasts.
+        # The last reading; the belief; firings and possible change since; the greatest rate; contradictions that the belief outlasts.
         self.last_us, self.believed_us, self.missed, self.grown, self.rate, self.conf = None, None, 0, 0, 0, 0
 
     def drop(self, long_ago_us):
         self.firings = [long_ago_us] * 3  # the latest first: fewer explain nothing, more add nothing
-        # `outside`: its only edges so far came outside the window; `off`: by how much its echo may be.
+        # `outside`: its only edges so far came outside the window; `off`: the uncertainty of its echo.
         self.echo_us, self.listening, self.can_emit, self.outside = None, False, False, True
         self.evidence = self.off = self.off_before = 0
         self.forget()
@@ -115,16 +115,16 @@ class _Sensor:
 
 
 class FlowRing:
-    """A ring whose clock has `clock_bits` bits and may wrap, as `time.ticks_us`. Poll it at its deadline, hand in echoes as they come."""
+    """A ring whose clock has `clock_bits` bits and may wrap, like `time.ticks_us`. Poll it at its deadline; report echoes as they come."""
 
     def __init__(self, flow, now_us, clock_bits=32):
         _check("clock_bits", clock_bits, 28, 64)
         self.flow, self._mask, self._half = flow, (1 << clock_bits) - 1, 1 << (clock_bits - 1)
-        # Longer ago than sound is heard; by how much a clock may step back; a round of the longest gaps.
+        # Longer ago than sound is heard; the most that a clock may step back; a round of the longest gaps.
         self._long_ago, self._step_back = 1 << (clock_bits - 2), 1 << min(20, clock_bits - 4)
         self._horizon = (flow.sensors + 1) * (flow.most_us + 2 * flow.dice_us) + flow.min_refire_us
-        self.report_after_us, self.silence = 0, NEVER_FREE  # a reading without echo comes no sooner; silence without a sign
-        self._known_from = (now_us - self._long_ago) & self._mask  # firings before are not known
+        self.report_after_us, self.silence = 0, NEVER_FREE  # earliest reading without an echo; meaning of silence without evidence
+        self._known_from = (now_us - self._long_ago) & self._mask  # earlier firings are unknown
         more_us = flow.most_us - flow.least_us
         self._first = (flow.least_us + more_us // 5) // _UNIT_US
         self._up, self._down = more_us // 4 // _UNIT_US, more_us // 10 // _UNIT_US
@@ -132,8 +132,8 @@ class FlowRing:
         self._oldest, self._pending, self._emit_at, self._seen = NOBODY, 0, now_us, now_us
         self._period = 0
         self._top = self._rate = _rate(flow.top_speed_mm_s)
-        self._told, self._before, self._greatest, self._since = None, self._top, self._top, 0  # the last word of motion; the greatest rates
-        # The place in the order whose turn it is, how many have fired ahead of theirs, when a sensor last fired.
+        self._told, self._before, self._greatest, self._since = None, self._top, self._top, 0  # last report; greatest rates
+        # The place in the order that has the turn; how many sensors have fired ahead of theirs; when any sensor last fired.
         self._order, self._place, self._ahead, self._last_fired = _in_order(flow.sensors), 0, 0, now_us
         self._high, self._low = flow.seed >> 16, flow.seed & 0xFFFF
         self._moves = self._every_echo = self._paused = False
@@ -162,7 +162,7 @@ class FlowRing:
         """The quiet that a sensor needs before and after its firing."""
         return max(self._sensors[x].doubt * _UNIT_US, self._least())
 
-    def _since_last(self, at_us):  # from the last firing of any until an instant, or 0
+    def _since_last(self, at_us):  # the time from the last firing of any sensor until an instant, or 0
         us = (at_us - self._last_fired) & self._mask
         return us if us <= self._half else 0
 
@@ -175,7 +175,7 @@ class FlowRing:
     def _decide(self):
         flow, order, least = self.flow, self._order, self._least()
         self._next, idle = NOBODY, True
-        # The quiet after those that wait for their edge, no longer than they listen: the longest, whose, and the second.
+        # The quiet that listening sensors still need, capped at their windows: the longest, whose it is, and the second longest.
         longest, second, whose = 0, 0, None
         for sensor in self._sensors:
             idle = idle and not sensor.enabled
@@ -185,7 +185,7 @@ class FlowRing:
                     longest, quiet, whose = quiet, longest, sensor
                 second = max(second, quiet)
         place = len(order) if self._paused else self._first_from(self._place)
-        # A round ends at once, and if nobody fires after the time for which one would rest.
+        # A round ends at once or, if no sensor can fire, after the rest time.
         self._due = (self._last_fired + (flow.rest_us if self._paused or idle else 0)) & self._mask
         while place < len(order):
             sensor = self._sensors[order[place]]
@@ -194,11 +194,11 @@ class FlowRing:
                 rested = self._since_last(sensor.fired_us + (flow.min_refire_us if sensor.listening else flow.rest_us))
             if rested <= quiet or self._next == NOBODY:
                 self._next, self._due = order[place], (self._last_fired + max(quiet, rested) + self._thrown) & self._mask
-            if rested <= quiet or self._ahead:  # nobody is passed over twice
+            if rested <= quiet or self._ahead:  # no sensor is passed over twice
                 break
             place = self._first_from(place + 1)
 
-    def _decide_from(self, now_us):  # by what is told only now: nothing is due sooner than that, unless it was
+    def _decide_from(self, now_us):  # on news that came only now: nothing becomes due before `now_us`, unless it was already
         due = self._due
         self._decide()
         due = due if self._reached(now_us, due) else now_us
@@ -209,7 +209,7 @@ class FlowRing:
         """Return a list of the next (sensor, instant), for hardware that fires by itself; empty if the round ends first."""
         return [] if self._next == NOBODY else [(self._next, self._due)]
 
-    def _set_moves(self):  # takes in the rate that holds now
+    def _set_moves(self):  # applies the current rate
         flow, moves = self.flow, self._rate > 0
         if self._moves != moves:
             self._moves = moves
@@ -217,7 +217,7 @@ class FlowRing:
                 sensor.conf = min(sensor.conf, 1)
         self._every_echo = flow.votes == EVERY_ECHO or flow.votes == BY_MOTION and flow.alone and moves
 
-    def _recent(self, now_us):  # the greatest rate while sound could be sent that is heard now
+    def _recent(self, now_us):  # the greatest rate while sound heard now could have been sent
         if self._told is not None and _TOLD_US < (now_us - self._told) & self._mask < self._half:
             self._told, self._rate = None, self._top
         if _HEARD_US < (now_us - self._since) & self._mask < self._half:
@@ -226,8 +226,8 @@ class FlowRing:
         return max(self._before, self._greatest)
 
     def moving(self, speed_mm_s, turn_mrad_s, now_us):
-        """Report how fast the robot moves and turns, once a control cycle. After half a second without: top speed."""
-        if not self._reached(now_us, self._since):  # the first word of a clock in its upper half, or one that has jumped
+        """Report how fast the robot moves and turns, once a control cycle. After half a second without a call, the top speed is assumed."""
+        if not self._reached(now_us, self._since):  # the first report of a clock in its upper half, or one that has jumped
             self._since, self._before, self._greatest = now_us, max(self._before, self._greatest), 0
         recent = self._recent(now_us)
         self._rate, self._told = _rate(abs(speed_mm_s) + abs(turn_mrad_s) // 2), now_us
@@ -237,14 +237,14 @@ class FlowRing:
         self._set_moves()
         self._decide_from(now_us)
 
-    def _grow(self, sensor, since_us):  # by how much a good reading may have changed since an instant
+    def _grow(self, sensor, since_us):  # the most that a good reading may have changed since an instant
         recent = self._recent(sensor.firings[0])
         self._set_moves()
         span = max(sensor.rate, recent) * min((sensor.firings[0] - since_us) & self._mask, 0xFFFFF) >> 14
         sensor.rate, sensor.grown = recent, min(sensor.grown + span, 0xFFFF)
         return span
 
-    def _judge(self, x, sensor, echo, since_us):  # an echo, or silence with a witness: (kind, age, explained_by)
+    def _judge(self, x, sensor, echo, since_us):  # judges an echo, or silence with a witness: (kind, age, explained_by)
         flow, explained_by, span = self.flow, None, self._grow(sensor, since_us)
         believed_us, last_us, at_us = sensor.believed_us, sensor.last_us, _SILENCE if echo is None else echo
         believes, fits, held_back = believed_us is not None, False, False
@@ -255,14 +255,14 @@ class FlowRing:
             explained_by = self._explanation(x, last_us, echo, flow.path_change_us + span)
             ok = explained_by is None
         far = believes and not fits and (echo is None or echo > believed_us)
-        if believes and not self._moves:  # what is farther, or silence, must outlast what is believed
+        if believes and not self._moves:  # farther echoes and silence must outlast the belief
             if fits:
                 sensor.conf = min(sensor.conf + 1, flow.hold)
             elif far:
                 sensor.conf = max(sensor.conf - 1, 0)
                 held_back = ok and sensor.conf > 0
                 ok = ok and not held_back
-        # The first silence in a row is no belief yet, but a robot that moves has left behind what was there.
+        # A first silence is not a belief yet, but a moving robot has left the old obstacle behind.
         clears, age = last_us == _SILENCE or fits or self._moves, sensor.age
         kind = FIRST if last_us in (None, _SILENCE) and not believes else REJECTED
         if echo is None:
@@ -271,7 +271,7 @@ class FlowRing:
             kind, explained_by = ACCEPTED, None
         elif explained_by is not None or held_back:
             kind = REPEATED if explained_by is None else AMBIGUOUS
-        # Readings of a robot that moves differ: quiet that did not help is let go. Nor does it help against what the ring did not fire.
+        # Readings of a moving robot differ anyway: quiet that did not help is dropped. Nor does it help against sound from elsewhere.
         lets_go = self._moves and not self._every_echo and sensor.missed & 2
         masked = not ok and echo is not None and not far and self._is_masked(x, sensor.firings[0] + echo)
         if masked and not lets_go:
@@ -288,18 +288,18 @@ class FlowRing:
         sensor.last_us = at_us
         return kind, age, explained_by
 
-    def _explanation(self, receiver, first, second, change):  # whose sound could be both echoes; HISTORY if a forgotten firing's
+    def _explanation(self, receiver, first, second, change):  # the sensor whose sound explains both echoes; HISTORY for a forgotten firing
         mask, own = self._mask, self._sensors[receiver]
-        off = max(own.off, own.off_before)  # as late as that, and twice as long ago
+        off = max(own.off, own.off_before)  # echoes may be this much later, and audible for twice this longer
         first, second = (own.firings[1] + first + off) & mask, (own.firings[0] + second + off) & mask
         audible = self.flow.most_us + 2 * off
         change += own.off + own.off_before
-        most = second - first + change  # but for that, the time between the sounds is that between their firings
-        # Whatever is forgotten came before the last of what is known: an instant after the first sound is no help.
+        most = second - first + change  # apart from this, the time between the sounds is that between their firings
+        # All forgotten firings came before the known ones; if that is after the first sound, one may explain it.
         forgotten = (first - self._known_from + self._half) & mask < self._half + audible
         for x in range(self.flow.sensors):
             firings = self._sensors[x].firings
-            latest, left_out = (1, 1) if x == receiver else (0, -1)  # its own two are those it is meant to hear
+            latest, left_out = (1, 1) if x == receiver else (0, -1)  # its own two echoes are meant to be heard
             for i in range(3):
                 age = (first - firings[i]) & mask
                 for j in range(latest, i + 1 if age <= audible and i != left_out else 0):
@@ -309,12 +309,12 @@ class FlowRing:
             forgotten = forgotten or (age + self._half) & mask < self._half + audible
         return HISTORY if forgotten else None
 
-    def _is_masked(self, receiver, heard):  # whether sound of any firing but the receiver's last could be what it heard
+    def _is_masked(self, receiver, heard):  # true if the sound of any firing but the receiver's last could be what it heard
         ages = ((heard - self._sensors[x // 3].firings[x % 3]) & self._mask for x in range(3 * self.flow.sensors) if x != 3 * receiver)
         return any(age <= self.flow.most_us for age in ages)
 
     def believed_us(self, x):
-        """Return the echo time believed of a sensor; None without a belief, or if nothing is in range."""
+        """Return the believed echo time of a sensor; None without a belief, or if nothing is in range."""
         sensor = self._sensors[x]
         return sensor.believed_us if sensor.missed <= self.flow.memory and sensor.believed_us != _SILENCE else None
 
@@ -322,13 +322,13 @@ class FlowRing:
         return self._pending > 0 or self._oldest != NOBODY
 
     def poll(self, now_us):
-        """Return the next event, or None: then sleep until the deadline. First hand in the echoes you know of."""
+        """Return the next event, or None: then sleep until the deadline. Report the echoes you know of first."""
         is_due = self._reached(now_us, self._due)
         if not is_due and not (self._pends() and self._reached(now_us, self._emit_at)):
             if (self._due - now_us) & self._mask > self._horizon:
                 self._restart(now_us)  # the clock has jumped
             return None
-        return self._advance(now_us, is_due)  # apart: variables of larger functions are kept in the heap, which is slow
+        return self._advance(now_us, is_due)  # split off: variables of larger functions live in the heap, which is slow
 
     def _advance(self, now_us, is_due):
         if not self._reached(now_us + self._step_back, self._seen):
@@ -357,14 +357,14 @@ class FlowRing:
         return self._emit_at if self._pends() and not self._reached(self._emit_at, self._due) else self._due
 
     def state(self, x, now_us):
-        """The state before a sensor, and its age: (kind, t_echo_us, age_us, why, explained_by)."""
+        """Return the state in front of a sensor, with its age: (kind, t_echo_us, age_us, why, explained_by)."""
         sensor = self._sensors[x]
         age_us = min((now_us - sensor.seen_at) & self._mask, self._half)
         if sensor.shows in _WHYS:
             return "unknown", None, age_us, sensor.shows, sensor.by
         return sensor.shows, sensor.seen_us if sensor.shows == "obstacle" else None, age_us, None, None
 
-    def _end_oldest(self, x, before):  # one that fired at `before` has ended: who is the oldest now, and when its window closes
+    def _end_oldest(self, x, before):  # after a firing of `before` has ended: finds the oldest now, and when its window closes
         if self._oldest == x:
             self._oldest, soonest = NOBODY, self._mask
             for other in range(self.flow.sensors):
@@ -413,11 +413,11 @@ class FlowRing:
                 kind = TOO_EARLY
             elif evidence == _NOTHING and echo is None:
                 kind = UNANSWERED if self.silence == NEEDS_ANSWER else NO_ECHO
-            if kind is not None:  # it says nothing of an echo
+            if kind is not None:  # it says nothing about an echo
                 self._grow(sensor, before)
                 sensor.miss()
                 sensor.last_us = None
-            elif evidence == _HELD and echo is None:  # no silence yet, nor the end of a run of them
+            elif evidence == _HELD and echo is None:  # neither silence yet, nor the end of a run of silences
                 self._grow(sensor, before)
                 previous, kind = None, CLEAR if sensor.believed_us == _SILENCE and not sensor.missed else NO_ECHO
                 sensor.last_us = _SILENCE if sensor.last_us == _SILENCE else None
@@ -434,28 +434,28 @@ class FlowRing:
     def _end_period(self, now_us):
         event, long_before = (PERIOD, 0, self._period), (now_us - self._long_ago) & self._mask
         self._place, self._ahead, self._period = 0, 0, (self._period + 1) & 0xFFFFFFFF
-        for sensor in self._sensors:  # those that fired ahead have had their turn; the clock must not come round to the others
+        for sensor in self._sensors:  # sensors that fired ahead have had their turn; old firings must not look recent
             sensor.ahead = False
             sensor.has_fired = sensor.has_fired and (now_us - sensor.fired_us) & self._mask <= self._half >> 2
             if self._is_long_ago(sensor.firings[0], now_us):
                 sensor.firings = [long_before] * 3
-                sensor.forget()  # the instant that its next reading would be compared from is no longer known
+                sensor.forget()  # the instant from which its next reading would be compared is no longer known
                 if not sensor.listening:
-                    sensor.outside, sensor.evidence = True, 0  # no edge is an echo of them
+                    sensor.outside, sensor.evidence = True, 0  # no edge can be their echo
             if (now_us - sensor.seen_at) & self._mask > self._half:
                 sensor.seen_at = (now_us - self._half) & self._mask
         if self._is_long_ago(self._known_from, now_us):
             self._known_from = long_before
         if self._next == NOBODY and (now_us - self._last_fired) & self._mask >= self.flow.rest_us:
-            self._last_fired = now_us  # nobody fires: rounds go on
+            self._last_fired = now_us  # no sensor fires, but rounds go on
         self._decide_from(self._due)
         return event
 
-    def _is_long_ago(self, at_us, now_us):  # but not what lies just ahead of now, from before the clock stepped back
+    def _is_long_ago(self, at_us, now_us):  # not so just ahead of now, from before the clock stepped back
         return self._long_ago < (now_us - at_us) & self._mask <= self._mask - self._step_back
 
     def echo(self, x, earliest_us, latest_us=None):
-        """Report an echo at an instant, or between two: the middle counts. If 300 us (5 cm) do not reach both, it is LATE."""
+        """Report an echo at an instant, or between two: the middle counts. If it may be off by more than 300 us (5 cm), it is LATE."""
         sensor, flow, latest_us = self._sensors[x], self.flow, earliest_us if latest_us is None else latest_us
         width = (latest_us - earliest_us) & self._mask
         if width >= self._half:
@@ -492,7 +492,7 @@ class FlowRing:
             self._pending += 1
 
     def fired(self, x, at_us):
-        """Corrects when a sensor last fired, before you poll for readings that may hold its sound."""
+        """Correct the instant of a sensor's last firing, before you poll for readings that may contain its sound."""
         sensor = self._sensors[x]
         firings, polled = sensor.firings, sensor.firings[0]
         if at_us == polled or at_us == firings[1] or not self._reached(at_us, firings[1]):
@@ -502,7 +502,7 @@ class FlowRing:
             sensor.echo_us -= later
             if sensor.echo_us < 0:  # the first edge came before it fired, and may have kept out the echo
                 sensor.echo_us, sensor.outside = 0, True
-        if not sensor.listening and sensor.last_us is not None and sensor.last_us < _SILENCE:  # its reading is judged already
+        if not sensor.listening and sensor.last_us is not None and sensor.last_us < _SILENCE:  # its reading was already judged
             sensor.last_us = max(sensor.last_us - later, 0)
             if not sensor.missed:
                 sensor.believed_us = max(sensor.believed_us - later, 0)
@@ -525,21 +525,21 @@ class FlowRing:
         self._show(x, _STUCK)
 
     def holds(self, x):
-        """Report that a line rose after the trigger, or is still high. Its silence counts when it has fallen: `answered`."""
+        """Report that a line rose after the trigger, or is still high. Silence counts once `answered` reports its fall."""
         self._show(x, _HELD)
 
     def answered(self, x, answered=True):
-        """Report that a sensor has shown that it listened, or that this was a disturbance; else see `silence`."""
+        """Report that a sensor has shown that it listened, or with `answered=False` that this was noise; see `silence`."""
         sensor, evidence = self._sensors[x], self._sensors[x].evidence
         if not answered:
             self._show(x, _NOTHING)
         elif evidence != _STUCK:
             sensor.evidence = _LISTENED
             if evidence == _HELD and not sensor.listening:
-                self._judge(x, sensor, None, sensor.firings[0])  # its reading is out
+                self._judge(x, sensor, None, sensor.firings[0])  # its reading was already emitted
 
     def measured(self, x, least_us, most_us=None):
-        """Take what hardware measured of the last firing: the echo time, two values around it, or None for silence."""
+        """Report a result that hardware measured for the last firing: the echo time, two limits of it, or None for silence."""
         if least_us is None:
             self.answered(x)
         else:
@@ -547,27 +547,27 @@ class FlowRing:
             self.echo(x, (fired_us + least_us) & self._mask, (fired_us + most_us) & self._mask)
 
     def forget(self, x):
-        """Forgets a sensor's echo, if it was false: its next reading is compared with nothing."""
+        """Forget a sensor's last echo, if it was false: its next reading is compared with nothing."""
         self._sensors[x].forget()
         self._sensors[x].doubt = self._first
         self._decide_from(self._due)
 
     def enable(self, x, enabled=True):
-        """Enables or disables a sensor from its next turn on."""
+        """Enable or disable a sensor from its next turn on."""
         was_enabled, self._sensors[x].enabled = self._sensors[x].enabled, enabled
         if enabled and not was_enabled:
             self.forget(x)
         self._decide_from(self._due)
 
     def pause(self, paused=True):
-        """Pauses all sensors, or resumes them. Beliefs stay, and the next reading is compared with no other."""
+        """Pause all sensors, or resume them. Beliefs stay, but each next reading is compared with no other."""
         self._paused = paused
         for sensor in [] if paused else self._sensors:
             sensor.last_us, sensor.missed = None, max(sensor.missed, 1)
         self._decide_from(self._due)
 
     def restart(self, now_us):
-        """Starts again from the first sensor, after a long sleep, with nothing known."""
+        """Start again from the first sensor after a long sleep, with nothing known."""
         self._restart(now_us)
         self._seen = now_us
         for sensor in self._sensors:
@@ -575,22 +575,22 @@ class FlowRing:
 
     def _restart(self, now_us):
         self._known_from = now_us
-        for sensor in self._sensors:  # sound from before may still be heard. A sensor that was said to fire a little later still does.
+        for sensor in self._sensors:  # earlier sound may still be heard; firings corrected to just ahead stay known
             if (sensor.firings[0] - self._known_from - 1) & self._mask < self._step_back:
                 self._known_from = sensor.firings[0]
             sensor.drop((now_us - self._long_ago) & self._mask)
             sensor.has_fired = sensor.has_fired and (now_us - sensor.fired_us) & self._mask <= self.flow.rest_us  # else the clock jumped
             sensor.ahead, sensor.doubt = False, self._first
         self._oldest, self._pending, self._place, self._ahead = NOBODY, 0, 0, 0
-        self._last_fired = (now_us + self.flow.most_us) & self._mask  # sound from before dies away
+        self._last_fired = (now_us + self.flow.most_us) & self._mask  # earlier sound dies away first
         self._decide()
 
 
 class HcSr04FlowRing:
     """A ring of HC-SR04 modules, on one pin each or with the echo lines on other pins. `read` samples the lines: call it often."""
 
-    # Of an HC-SR04; a subclass for another module has its own. A line that rises later was not raised by its trigger; one that is
-    # high no longer than the hold listens still. A stuck line is pulled low for the last, such as 200 us, if not 0: it needs 1 kOhm.
+    # Times of an HC-SR04; subclass it for other modules. A line that rises later was not raised by its trigger; a line that is
+    # high no longer than the hold still listens. RECOVERY_US, if not 0, pulls a stuck line low, for 200 us say: it needs 1 kOhm.
     DEAF_US, SHORTEST_US, LONGEST_US, MIN_RETRIGGER_US, TRIGGER_US = 100, 100, 36000, 60000, 10
     LATEST_RISE_US, LONGEST_HOLD_US, RECOVERY_US = 1400, 250000, 0
 
@@ -606,17 +606,17 @@ class HcSr04FlowRing:
         while time.ticks_diff(1 << bits - 1, 0) > 0:
             bits += 1
         self.ring = FlowRing(flow, time.ticks_us(), bits)
-        self.ring.silence = NEEDS_ANSWER  # a line that does not rise is no free space
-        # When a line rose, by how much sooner it may have; when it was last seen as it is.
+        self.ring.silence = NEEDS_ANSWER  # a line that does not rise is not free space
+        # When a line rose, and how much sooner it may have; when its level was last seen unchanged.
         self._rose, self._early, self._seen = [None] * len(pins), [0] * len(pins), [0] * len(pins)
         self._awaits = [False] * len(pins)
-        # Since when modules have a reading that is not late, and two in a row, a bit each.
+        # The beginning of a second, and a bit for each module with a punctual reading in it, and with two in a row.
         self._since, self._heard, self._twice = time.ticks_us(), 0, 0
 
     def _since_firing(self, x, now):
         return self._time.ticks_diff(now, self.ring._sensors[x].firings[0])
 
-    def _sample(self, before):  # small and without objects of its own, as `FlowRing.poll`
+    def _sample(self, before):  # small and without allocation, like `FlowRing.poll`
         for x in range(len(self._awaits)):
             if self._awaits[x]:
                 high = self._echoes[x].value()
@@ -648,10 +648,10 @@ class HcSr04FlowRing:
         pin, rose, high = self._triggers[x], self._rose[x], self._echoes[x].value()
         if rose is not None:
             if high and -self._since_firing(x, rose) <= self.LONGEST_HOLD_US:
-                self.ring.holds(x)  # it has heard nothing of an earlier trigger yet
+                self.ring.holds(x)  # it still listens after an earlier trigger
                 return
             if not high:
-                self.ring.forget(x)  # its pulse never ended: what counted as silence may have been an echo
+                self.ring.forget(x)  # its pulse never ended: the apparent silence may have been an echo
         self._rose[x], self._awaits[x] = None, not high
         if high:
             self.ring.stuck(x)
@@ -664,17 +664,17 @@ class HcSr04FlowRing:
         pin.value(1)
         self._time.sleep_us(self.TRIGGER_US)
         pin.value(0)
-        self._seen[x] = self._time.ticks_us()  # what is compared is what was fired
+        self._seen[x] = self._time.ticks_us()  # readings are judged by actual firings
         self.ring.fired(x, self._seen[x])
         if self._one_pin:
             pin.init(self._pin.IN)
 
     def state(self, x):
-        """Returns `FlowRing.state` at the present time."""
+        """Return `FlowRing.state` at the present time."""
         return self.ring.state(x, self._time.ticks_us())
 
     def moving(self, speed_mm_s, turn_mrad_s):
-        """Calls `FlowRing.moving` with the present time."""
+        """Call `FlowRing.moving` with the present time."""
         self.ring.moving(speed_mm_s, turn_mrad_s, self._time.ticks_us())
 
     def read(self):
@@ -692,7 +692,7 @@ class HcSr04FlowRing:
         return event
 
     def too_slow(self):
-        """Return true about once a second if `read` is called too seldom: a module had no two timely readings in a row."""
+        """Return true about once a second if `read` is called too rarely: a module had no two punctual readings in a row."""
         now, twice = self._time.ticks_us(), self._twice
         if self._time.ticks_diff(now, self._since) < 950000:
             return False

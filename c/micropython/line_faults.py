@@ -1,4 +1,4 @@
-"""Faults of one echo line from tests/data/line-faults.txt, and the table of tests/data/line-fault-outcomes.txt."""
+"""Read the faults of one echo line in tests/data/line-faults.txt, and fill the table of tests/data/line-fault-outcomes.txt."""
 
 FAULTY = 1  # in the file's ring
 
@@ -24,12 +24,12 @@ def read(text):
 
 
 def cell(right, count, lies):
-    """A cell of the table."""
+    """Return a cell of the table."""
     return "%d of %d, %d" % (right, count, lies)
 
 
 def with_column(document, column, cells):
-    """Return the document with these cells, by name and surroundings, in a column of its table."""
+    """Return the document with these cells, keyed by name and surroundings, in a column of its table."""
     rows, left = [line.split("|") for line in document.split("\n")], dict(cells)
     at = [[cell.strip() for cell in row].index(column) for row in rows if row[1:2] == [" fault "]][0]
     for row in rows:

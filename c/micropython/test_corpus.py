@@ -1,7 +1,7 @@
-"""Compares eeruf.py over the corpus with the output of the Rust crate eeruf-core: python3 test_corpus.py [corpus.txt].
+"""Compare eeruf.py with the Rust crate eeruf-core over the corpus: python3 test_corpus.py [corpus.txt].
 
-Without a file it takes the lines that the repository keeps. It runs under MicroPython too. The lines are described in
-crates/eeruf-core/tests/all/corpus.rs, and of flow rings in corpus/flow.rs beside it; those that fire by a table are left out."""
+Without a file it uses the lines that the repository keeps. It runs under MicroPython too. The lines are described in
+crates/eeruf-core/tests/all/corpus.rs, those of flow rings in corpus/flow.rs; rings that fire by a table are left out."""
 
 import sys
 
@@ -21,7 +21,7 @@ def explanation(by):
 
 
 def flat(event):
-    """An event in the corpus's form."""
+    """Return an event in the form of the corpus."""
     if event is None:
         return []
     if event[0] == READING:
@@ -33,7 +33,7 @@ def play(ring, what, n):
     """Perform a line of the corpus on a ring; return (actual result, expected result)."""
     if what == "P":
         event = flat(ring.poll(n[0]))
-        # Its end of a round does not say how late firings were.
+        # At the end of a round it does not report lateness.
         return [ring.deadline()] + event, n[1:5] if event[:1] == [2] else n[1:]
     if what == "O":
         kind, t_echo, age, why, by = ring.state(n[0], n[1])
@@ -54,7 +54,7 @@ def play(ring, what, n):
 
 
 def check(lines):
-    """Number of rings and of events that were compared."""
+    """Return the numbers of rings and events compared."""
     rings = count = 0
     ring = None
     for at, line in enumerate(lines, 1):

@@ -1,4 +1,4 @@
-"""A HcSr04FlowRing, which samples lines, and faults of one of them: python3 test_line_faults.py.
+"""Test HcSr04FlowRing, which samples lines, with faults of one of them: python3 test_line_faults.py.
 
 Free space is never reported without evidence, and each state is right after two readings. It runs under MicroPython
 too."""
@@ -10,7 +10,7 @@ READINGS = 40
 COLUMN = "MicroPython"
 TURN = 1 << 30  # of a board's clock
 STEP_US = 20  # between two looks at the clock
-TOLERANCE_US = 120  # by which a sampled width may be wrong
+TOLERANCE_US = 120  # of a sampled width
 WALL = [(450, True, False), (6280, False, False)]
 NOTHING = [(450, True, False), (38450, False, False)]
 
@@ -60,12 +60,12 @@ class Board:
 
     def sleep_us(self, us):
         self.now += us
-        # A line that is driven low meanwhile stays low, if its module lets go.
+        # A line driven low stays low once its module lets go.
         for line in self.driven:
             self.levels[line] = False
 
     def look(self, line):
-        """Return a line's level. If two edges have just come, only the first counts, so that looks hit every gap."""
+        """Return a line's level. If two edges have just come, only the first counts, so that samples hit every gap."""
         due = [edge for edge in self.ahead if edge[1] == line and edge[0] <= self.now]
         for edge in due:
             self.ahead.remove(edge)
@@ -78,7 +78,7 @@ class Board:
         fault, line, edges = self.fault, x, WALL
         self.fired[x] = self.now
         if x == FAULTY:
-            # Once it was pulled low it hears again.
+            # Once its line was pulled low, the module hears again.
             edges = WALL if self.pulled or self.now < self.onset else fault.edges
         elif x == fault.partner:
             edges = NOTHING
@@ -90,7 +90,7 @@ class Board:
             self.ahead.sort()
 
     def skip(self, deadline):
-        """Skips the time in which nothing happens, once all lines were looked at."""
+        """Skip time in which nothing happens, once all lines were sampled."""
         if self.now - self.changed < 10 * STEP_US:
             return
         to = self.now + self.ticks_diff(deadline, self.now % TURN) - 5 * STEP_US
@@ -101,7 +101,7 @@ class Board:
 
 
 class Forgetful(HcSr04FlowRing):
-    """A program that triggers the faulty sensor by itself, and never reports it."""
+    """A program that triggers the faulty sensor by itself and never reports it."""
 
     def _trigger(self, x):
         if x == FAULTY:
@@ -115,7 +115,7 @@ Recovering = type("Recovering", (HcSr04FlowRing,), {"RECOVERY_US": 200})
 
 
 def run(fault, kind=HcSr04FlowRing, onset_us=0):
-    """The readings of the faulty sensor, and of the one that its wire is exchanged with: (kind, state)."""
+    """Return the readings, as (kind, state), of the faulty sensor and of the one with which its wire is exchanged."""
     board = Board(fault, STEP_US, onset_us)
     flow = Flow(4, 40000, rest_us=100000, seed=1)
     ring = (Forgetful if fault.forgotten else kind)(flow, [0, 1, 2, 3], [10, 11, 12, 13], machine=board, time=board)
@@ -131,7 +131,7 @@ def run(fault, kind=HcSr04FlowRing, onset_us=0):
 
 
 def check_walls(fault, step_us, **settings):
-    """Check modules on one pin each before walls: 97 % accepted, with samples this far apart, timed from the
+    """Check modules with one pin each that face walls: 97 % accepted, with samples this far apart, timed from the
     trigger."""
     board, readings = Board(fault, step_us), []
     ring = HcSr04FlowRing(Flow(4, 25000, seed=1, **settings), [0, 1, 2, 3], machine=board, time=board)
@@ -170,7 +170,7 @@ def check(text):
     for fault in faults:
         name, says = fault.name + ", before " + fault.before, fault.samples
         faulty, partner = run(fault)
-        # For 250 ms it may be a clone that has heard nothing. A silence counts once its line has fallen, and it takes two: a module fires
+        # For 250 ms it may be a clone without an echo. A silence counts once its line has fallen, and it takes two: a module fires
         # every 100 ms.
         until_right = {"hold of 130 ms": 3, "hold of 200 ms": 4}.get(fault.name, 3 if says[0] == "held" else 2)
         lies = sum([is_clear(said) for said in ([] if says[0] == "clear" else faulty) + partner])
@@ -186,11 +186,11 @@ def check(text):
 
 
 def check_held(text):
-    """Check a line before a wall that sticks high at any time (never clear), and one that is held until it is pulled
+    """Check a line that sticks high at any time in front of a wall (never clear), and one that is held until pulled
     low (stuck once, then a wall).
     """
     held = [fault for fault in read(text)[2] if fault.name == "held for ever"][0]
-    for onset_us in range(500000, 2500000, 95239):  # all over the 100 ms between two firings
+    for onset_us in range(500000, 2500000, 95239):  # spread over the 100 ms between two firings
         readings, _ = run(held, onset_us=onset_us)
         if not is_right(readings[3], ["obstacle", "5830"]) or readings[-1][0] != STUCK or any([is_clear(said) for said in readings]):
             raise AssertionError("stuck from %d us on: %r" % (onset_us, readings))

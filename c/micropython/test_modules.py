@@ -1,4 +1,4 @@
-"""Tests of settings. Rings are tested by the corpus, modules by the faults of a line."""
+"""Tests of settings. The corpus tests rings, the line faults test modules."""
 
 import sys
 
@@ -8,7 +8,7 @@ WINDOW_US = 25000
 
 
 def settings():
-    """Checks that invalid settings are refused by name, and that the chip's number is the seed."""
+    """Check that invalid settings are refused by name, and that the chip's number is the seed."""
     for wrong, said in (
         ({"sensors": 65, "seed": 1}, "sensors = 65: 1 to 64 expected"),
         ({"sensors": 6, "seed": 0}, "seed = 0: 1 to 4294967295 expected"),

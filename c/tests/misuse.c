@@ -1,5 +1,5 @@
-/* Whatever a caller does wrong has a status: null, memory that is too small, a sensor out of range, use before
-   initialisation, another version. Exit code 0 if each call gives the status that it should. */
+/* Each mistake of a caller has a status: null, too little memory, a sensor out of range, use before initialisation,
+   another version. The exit code is 0 if each call returns the expected status. */
 #include "eeruf.h"
 
 #include <stdio.h>
@@ -124,7 +124,7 @@ static void rings(void) {
     EXPECT(init(r, s, &empty, &usual), EERUF_ERR_NOT_READY);
     EXPECT(init(r, s, &unverified, &usual), EERUF_ERR_UNVERIFIED);
     EXPECT(eeruf_ring_init_unverified(&ring, r, sensors, s, &unverified, &usual, 0),
-           EERUF_ERR_UNVERIFIED); /* it does not say t_delta and window either */
+           EERUF_ERR_UNVERIFIED); /* nor does it give t_delta and window */
 #define CONFIG(field, value, status) WITH(EerufConfig, usual, field, value, init(r, s, &schedule, &with), status)
     CONFIG(version, EERUF_VERSION + 1, EERUF_ERR_VERSION);
     CONFIG(consecutive, 9, EERUF_ERR_CONSECUTIVE);
@@ -163,7 +163,7 @@ static void edge_queues(void) {
     for (pushed = 0; pushed < 8; pushed++) EXPECT(eeruf_edges_push(&edges, pushed, true, pushed), EERUF_OK);
     EXPECT(eeruf_edges_push(&edges, 8, true, 8), EERUF_ERR_MEMORY);
     EXPECT(edges.lost, 1);
-    /* The time by which an edge may have come sooner is rounded up. */
+    /* The uncertainty of an edge is rounded up. */
     EXPECT(eeruf_edges_init(&edges, sizeof edges, places, sizeof places), EERUF_OK);
     EXPECT(eeruf_edges_push_between(&edges, 0, true, 5, 4), EERUF_ERR_BETWEEN);
     EXPECT(eeruf_edges_push_between(&edges, 0, true, UINT32_MAX, 16), EERUF_OK);
@@ -251,7 +251,7 @@ static void flow_rings(void) {
     FLOW(version, EERUF_VERSION + 1, EERUF_ERR_VERSION);
     FLOW(sensors, 0, EERUF_ERR_SENSORS);
     FLOW(sensors, 65, EERUF_ERR_SENSORS);
-    /* Milliseconds, metres a second, and what is too long. */
+    /* Values in milliseconds or m/s, and values that are too long. */
     FLOW(least_us, 6, EERUF_ERR_FLOW_LEAST);
     FLOW(least_us, 33501, EERUF_ERR_FLOW_LEAST);
     FLOW(most_us, 33, EERUF_ERR_FLOW_MOST);

@@ -1,26 +1,25 @@
-// See EerufArduino.h. The interrupts are the sketch's.
+// See EerufArduino.h. The sketch has the interrupts.
 #ifndef EERUF_POLLED
 #define EERUF_POLLED
 #endif
 #include "EerufArduino.h"
 
-// A line is looked at for this long at a time, as often as can be; and longer where an edge is expected before loop()
-// comes back.
+// Lines are sampled continuously for this long at a time, and longer if an edge is expected before loop() returns.
 static const uint32_t LOOKS_US = 300, LONGEST_US = 4000;
 // Lines rise within this time after their trigger.
 static const uint32_t RISES_US = 1000;
-// From a poll to its trigger, in a flow ring: up to 0.5 ms on an Uno.
+// Time from a poll to its trigger in a flow ring: up to 0.5 ms on an Uno.
 #ifdef __AVR__
 static const uint16_t DECIDES_US = 8000 / (F_CPU / 1000000);
 #else
 static const uint16_t DECIDES_US = 0;
 #endif
-// An edge that came within as long as this has no time, which the second says.
+// An edge known only to within TOO_LONG_US has no time, which LATE_US marks.
 static const uint32_t TOO_LONG_US = 500, LATE_US = 40000;
 
-// AVRs whose core has these tables, which that of the megaAVRs has not.
+// AVRs whose core has these tables; that of the megaAVRs does not.
 #if defined(__AVR__) && !defined(ARDUINO_ARCH_MEGAAVR)
-// A quarter of the time of digitalRead, and less flash than the core's functions together.
+// Takes a quarter of the time of digitalRead, and less flash than the core's functions together.
 bool EerufPin::isHigh(uint8_t pin) {
     return *portInputRegister(digitalPinToPort(pin)) & digitalPinToBitMask(pin);
 }
@@ -62,7 +61,7 @@ void EerufPin::release(uint8_t trigger, uint8_t echo) {
 }
 
 void EerufPin::trigger(uint8_t trigger, uint8_t echo, uint8_t us) {
-    // In this order: an input that is driven high has its pull-up on, and reads as an edge of the echo line.
+    // The order matters: an input that is driven high has its pull-up on, which reads as an edge of the echo line.
     setOutput(trigger, true);
     drive(trigger, true);
     delayMicroseconds(us);
@@ -71,10 +70,10 @@ void EerufPin::trigger(uint8_t trigger, uint8_t echo, uint8_t us) {
 
 namespace EerufLines {
 bool hasInterrupts;
-static uint8_t alone; // lines without a port that is read as a whole
+static uint8_t alone; // lines that are read one by one
 
-// Eight lines are one group: those of a port, where its pins interrupt when they change. Lines without are groups too,
-// whose pins are read one by one. Levels of a group, and which of its pins are outputs.
+// Eight lines form a group: those of a port if its pins interrupt when they change. Other lines form groups too, whose
+// pins are read one by one. `levels` reads a group, `outputs` tells which of its pins are outputs.
 #if defined(__AVR_ATmega328P__) || defined(__AVR_ATmega168__)
 static const uint8_t PORTS = 3, BY_CHANGE = 3, GROUPS = PORTS; // `BY_CHANGE`: ports that have an interrupt
 static inline uint8_t levels(uint8_t group) {
@@ -101,7 +100,7 @@ static inline uint8_t EERUF_IN_RAM port(uint8_t) {
     return 0;
 }
 static inline uint8_t EERUF_IN_RAM outputs(uint8_t) {
-    return 0; // nothing looks while a trigger is given
+    return 0; // lines are not sampled during a trigger
 }
 #endif
 static uint8_t pinOf[8 * (GROUPS - PORTS)];
@@ -115,15 +114,15 @@ static uint8_t EERUF_IN_RAM levels(uint8_t group) {
 #endif
 
 static EerufEdges *edges;
-// The levels of lines, the pins that are echo lines, and pulses whose beginning has no time.
+// The levels of lines, the pins that are echo lines, and pulses whose start has no time.
 static uint8_t sensorOf[GROUPS][8], known[GROUPS], ours[GROUPS], timeless[GROUPS];
 static uint32_t looked;
 
 #if defined(TIMER0_COMPB_vect) && (F_CPU == 16000000 || F_CPU == 8000000)
 #define EERUF_HALVES
-// The timer of micros() counts on where interrupts wait, but of two overflows meanwhile one is lost. Timers 1 and 2 tell,
-// unless both are taken: the core leaves them counting as fast, up to 255 and down again.
-static uint16_t lead; // of their place over that of micros(), in a round of 510
+// The timer of micros() counts on while interrupts wait, but if it overflows twice one overflow is lost. Timers 1 and 2
+// reveal that unless both are taken: the core leaves them counting at that speed, up to 255 and down again.
+static uint16_t lead; // of their place ahead of that of micros(), in a round of 510
 static uint32_t lost; // by micros()
 
 static bool count(uint8_t *at) {
@@ -137,11 +136,11 @@ static bool count(uint8_t *at) {
     return (TCCR1A & 0x03) == _BV(WGM10) && (TCCR1B & 0x1f) == (_BV(CS11) | _BV(CS10));
 }
 
-// Makes up for overflows that micros() has lost at an instant, by the counter just after it. True if it cannot: the
-// counter was set to something else.
+// Makes up for overflows that micros() had lost by an instant, from the counter just after it. Returns true if it
+// cannot, because the counter was set to something else.
 static bool hasLostTime(uint32_t us, uint8_t at) {
     const uint8_t TICKS_AT = F_CPU == 16000000 ? 2 : 3; // of micros()
-    // In ticks, and in a round of 510: 512 are 2, so that each byte but the first counts alike.
+    // In ticks, modulo 510: 512 counts as 2, so that each byte but the first counts alike.
     const uint16_t sum = (uint8_t)(us >> 8) + (uint16_t)(uint8_t)(us >> 16) + (uint8_t)(us >> 24);
     const uint16_t ticks = (sum << (8 - TICKS_AT)) + ((uint8_t)us >> TICKS_AT);
     uint16_t place = lead + (ticks & 511) + (ticks >> 9) * 2;
@@ -163,8 +162,8 @@ static bool hasLostTime(uint32_t us, uint8_t at) {
     return true;
 }
 
-// The clock of rings, with interrupts off. They wait for longer than other interrupts take if of two that each pass of
-// timer 0 raises one waits.
+// The clock of rings, with interrupts off. Timer 0 raises two interrupts in each pass: if one is pending here,
+// interrupts have waited for longer than other interrupts take.
 static uint32_t read(bool *haveWaited, bool *hasLost) {
     uint8_t at;
     const uint8_t flags = TIFR0, ticks = TCNT0, since = ticks - OCR0B;
@@ -178,19 +177,19 @@ static const bool IS_KNOWN = true;
 static inline uint32_t EERUF_IN_RAM read(bool *, bool *) {
     return micros();
 }
-static const bool IS_KNOWN = false; // only edges that come together tell
+static const bool IS_KNOWN = false; // only edges that come together reveal it
 #endif
 
-// Queues the edges that came since an instant, or just now: with interrupts off. An edge has no time that an interrupt
-// finds late, nor has the end of a pulse whose beginning has none, or in which time was lost.
+// Queues the edges that came since an instant, or just now, with interrupts off. An edge has no time if its interrupt
+// was late; nor has the end of a pulse whose start has none, or during which time was lost.
 static void EERUF_IN_RAM take(uint32_t since, bool isInterrupt) {
     bool waited = false, hasLost = false;
     const uint32_t at = read(&waited, &hasLost);
     const bool isLate = isInterrupt ? waited : hasLost || at - since > TOO_LONG_US;
     if (isInterrupt) since = at;
-    // Lines of an interrupt wait meanwhile: groups that no line is in are left out.
+    // Lines with interrupts wait meanwhile, so empty groups are left out.
     for (uint8_t group = 0; group < (alone ? GROUPS : PORTS); group++) {
-        // A pin that is an output is high by our own trigger.
+        // A pin that is an output is high because of our own trigger.
         uint8_t changed = (uint8_t)((levels(group) ^ known[group]) & ours[group] & ~outputs(group));
         uint8_t late = timeless[group];
         if (hasLost) late |= known[group];
@@ -224,7 +223,7 @@ uint32_t now() {
 #endif
 }
 
-// Pulses in which time was lost have none.
+// Marks pulses in which time was lost as having none.
 static void makeUp() {
 #ifdef EERUF_HALVES
     bool waited, hasLost;
@@ -241,10 +240,10 @@ void EERUF_IN_RAM onInterrupt() {
 }
 
 #if !defined(__AVR_ATmega328P__) && !defined(__AVR_ATmega168__)
-// Whether attachInterrupt() does something for a pin.
+// True if attachInterrupt() works for a pin.
 static bool canInterrupt(uint8_t pin) {
 #ifdef ARDUINO_ARCH_SAMD
-    // The chip has 16 lines for all pins: of two pins on one only the last would interrupt.
+    // The chip has 16 lines for all pins: if two pins share one, only the last would interrupt.
     static uint16_t taken;
     const int line = g_APinDescription[pin].ulExtInt;
     if (line < 0 || line > 15 || (taken >> line & 1)) return false;
@@ -258,7 +257,7 @@ static bool canInterrupt(uint8_t pin) {
 }
 #endif
 
-// A group and a place for a line; whether its changes interrupt.
+// Finds a group and a place for a line; true if its changes interrupt.
 static bool find(uint8_t pin, uint8_t *group, uint8_t *place) {
 #if defined(__AVR_ATmega328P__) || defined(__AVR_ATmega168__)
     *group = digitalPinToPCICRbit(pin);
@@ -342,13 +341,13 @@ bool EerufModules::begin(EerufStatus status, EerufRing &ring, EerufLine *lines, 
     return status == EERUF_OK;
 }
 
-// True if a module's reading is still to come.
+// True if a module's reading is pending.
 static bool awaits(const EerufHcSr04 &modules, uint8_t sensor) {
     return eeruf_hc_sr04_awaits(&modules, sensor, nullptr) &&
            EerufLines::now() - eeruf_ring_fired_at(modules.ring, sensor) <= modules.ring->window_us;
 }
 
-// True if an edge is expected before loop() comes back: that of the echo which is believed.
+// True if an edge is expected before loop() returns: that of the believed echo.
 bool EerufModules::expects(uint32_t now) const {
     for (uint8_t i = 0; i < count_ && modules_.ring->consecutive == 0; i++) {
         if (!awaits(modules_, i)) continue;
@@ -361,7 +360,7 @@ bool EerufModules::expects(uint32_t now) const {
 
 uint32_t EerufModules::collect(uint16_t soon, bool looks) {
     uint32_t now;
-    // Once: firings that are due within some 150 us of each other have no time for it.
+    // Only once: firings due within some 150 us of each other leave no time for it.
     EerufLines::makeUp();
     if (looks && looks_) {
         const uint32_t began = EerufLines::now(), away = began - seen_;
@@ -371,7 +370,7 @@ uint32_t EerufModules::collect(uint16_t soon, bool looks) {
         while (queue_.pushed == queue_.popped && (int32_t)((now = EerufLines::now()) - eeruf_ring_due(modules_.ring)) < 0 &&
                (now - began < LOOKS_US || expects(now)));
     }
-    // The clock is read before the edges: then no window closes on one that came in time.
+    // The clock is read before the edges, so that no window closes on one that came in time.
     do {
         now = EerufLines::now();
         if (looks && looks_) EerufLines::look();
@@ -400,7 +399,7 @@ void EerufModules::pullLow(EerufModules &self, uint8_t sensor) {
     setOutput(echo, false);
 }
 
-// Unless the line is high.
+// Triggers a module unless its line is high.
 void EerufModules::fire(uint8_t sensor, bool looks) {
     bool isHigh;
     if (eeruf_hc_sr04_fire(&modules_, sensor, EerufPin::isHigh(echoes_[sensor])) != EERUF_OK) {
@@ -408,7 +407,7 @@ void EerufModules::fire(uint8_t sensor, bool looks) {
         return;
     }
     EerufPin::trigger(triggers_[sensor], echoes_[sensor], modules_.settings->trigger_us);
-    // Its line rises soon, before loop() does other things.
+    // The line rises soon: wait for it before loop() does other things.
     const uint32_t fired = ::micros();
     while (looks && looks_ && eeruf_hc_sr04_awaits(&modules_, sensor, &isHigh) && !isHigh && ::micros() - fired < RISES_US) {
         EerufLines::look();
@@ -444,6 +443,6 @@ uint32_t EerufModules::quietFor() const {
 
 uint16_t EerufModules::millimetres(uint32_t soundMmPerS) const {
     if (reading_.t_echo_us == EERUF_NO_ECHO) return 0;
-    // c t / 2 in 32 bits, which holds for these modules: no echo is longer than 36 ms. eeruf_distance_mm takes any.
+    // c t / 2 in 32 bits, enough for these modules, whose echoes take at most 36 ms. eeruf_distance_mm takes any.
     return (reading_.t_echo_us * (soundMmPerS / 8) + 125000) / 250000;
 }

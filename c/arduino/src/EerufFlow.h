@@ -15,18 +15,18 @@ template <uint8_t N> class EerufFlow : public EerufModules {
 public:
     // One pin for trigger and echo of each module.
     explicit EerufFlow(const uint8_t (&pins)[N]) : EerufModules(pins, pins, N) {}
-    // Two pins for each.
+    // Two pins for each module.
     EerufFlow(const uint8_t (&triggers)[N], const uint8_t (&echoes)[N]) : EerufModules(triggers, echoes, N) {}
 
     // Begins firing HC-SR04 modules. False if the settings cannot be used: status() says why. Robots that meet need
-    // seeds of their own, not 0.
+    // different seeds, not 0.
     bool begin(uint32_t seed = 1) {
         EerufFlowConfig config = EERUF_FLOW(N, 37000); // their longest echo and a millisecond
         config.seed = seed;
         static const EerufHcSr04Settings settings = EERUF_HC_SR04;
         return begin(config, settings);
     }
-    // By the settings that `eeruf design RING.toml --emit arduino` writes: RING and RING_MODULES. The latter must last.
+    // Begins with RING and RING_MODULES from `eeruf design RING.toml --emit arduino`; the latter must outlive this.
     inline __attribute__((always_inline)) bool begin(const EerufFlowConfig &config, const EerufHcSr04Settings &settings) {
         EerufStatus status = EERUF_ERR_SENSORS;
         const auto init = config.own == nullptr ? eeruf_flow_init_alike : eeruf_flow_init;
@@ -35,10 +35,10 @@ public:
         return EerufModules::begin(status, ring_.ring, lines_, places_, sizeof places_ / sizeof *places_, settings);
     }
 
-    // How fast the robot moves, in mm/s, and turns, in mrad/s: at least twice a second while it does.
+    // Reports how fast the robot moves (mm/s) and turns (mrad/s): call it at least twice a second while it does.
     void moving(uint32_t speed, uint32_t turn = 0) { (void)eeruf_flow_moving(&ring_, speed, turn, EerufLines::now()); }
 
-    // One step; true if a module has a new reading.
+    // Takes one step; true if a module has a new reading.
     bool read() {
         EerufEvent event;
         if (status_ != EERUF_OK) return false;
@@ -52,7 +52,7 @@ public:
     bool enable(uint8_t sensor, bool enabled = true) {
         return eeruf_flow_enable(&ring_, sensor, enabled) == EERUF_OK;
     }
-    // Fires no module, or all again.
+    // Pauses all modules, or resumes them.
     void pause(bool paused = true) { (void)eeruf_flow_pause(&ring_, paused); }
     EerufFlowRing &flow() { return ring_; }
 

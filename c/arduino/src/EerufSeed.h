@@ -1,6 +1,6 @@
-// A seed of the board's own for the dice of flow: the chip's number where it has one. An AVR without one draws it at its
-// first start, of the noise at an open analog pin and of the clock, and keeps it in the last four bytes of its EEPROM;
-// another board without one draws it at each start.
+// A seed for flow that differs from board to board: the chip's number if there is one. An AVR without one draws a seed
+// at its first start, from the noise at an open analog pin and the clock, and keeps it in the last four bytes of its
+// EEPROM; other boards without a number draw it at each start.
 #pragma once
 
 #include <Arduino.h>
@@ -67,7 +67,7 @@ inline uint32_t drawn(uint8_t pin) {
 }
 } // namespace EerufSeed
 
-// The pin is an open one.
+// The board's seed; `pin` is an unconnected analog pin.
 inline uint32_t eerufSeed(uint8_t pin = A0) {
     const uint32_t seed = EerufSeed::drawn(pin);
     return seed == 0 ? 1 : seed;

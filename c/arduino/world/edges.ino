@@ -1,6 +1,6 @@
-// Four modules, each of whose lines has an interrupt of its own that hands in the level it sees.
-// Says the state before a module at each of its readings. `cargo xtask arduino` puts the table LINE_FAULTS of
-// tests/data/line-faults.txt before it; with FORGOTTEN, module 2's interrupt is not attached.
+// Four modules, each with an interrupt of its own that reports the level of its line. Prints the state in front of a
+// module at each of its readings. `cargo xtask arduino` puts the table LINE_FAULTS of tests/data/line-faults.txt before
+// it; with FORGOTTEN, module 2's interrupt is not attached.
 const uint8_t TRIGGERS[] = {4, 5, 6, 7};
 const uint8_t ECHOES[] = {8, 2, A0, 3};
 EerufSonar<4> sonar(LINE_FAULTS, TRIGGERS, ECHOES);

@@ -1,15 +1,15 @@
-/* A small world around a simulated Arduino: HC-SR04 modules on its pins, in a room where they hear each other.
+/* A simulated world around an emulated Arduino: HC-SR04 modules on its pins, in a room where they hear each other.
  *
  *   world [--pulses] [--mega] [--eeprom HEX] [--fault KIND:MODULE] SKETCH.elf SECONDS ECHO_TIMES MODULES TRIGGER_PIN.. ECHO_PIN..
  *
- * ECHO_TIMES has a line for each way that sound takes: emitter, receiver, microseconds; `crates/eeruf-sim`'s example
- * echo_times writes it. Pins are the Uno's numbers, or with --mega those of a Mega 2560; the same pin twice is a module
- * with one pin. What the sketch says on its serial line goes to standard output; then come lines that begin with
- * `world`: firings of each module, triggers that came while its line was high, how often its latched line was pulled low, how
- * deep the stack ever was in bytes, and which share of the time, in millionths, passed in interrupts. With --pulses there is also a line for each pulse that sound
- * has ended: the module from 1, whose sound it was: `own`, `earlier` for its own from an earlier firing, `foreign`, and
- * the pulse's width in microseconds. With --eeprom the board's EEPROM begins with these bytes. A byte that the sketch
- * writes to GPIOR0 is a line, too: `read`, the byte, and the number in GPIOR1 (high) and GPIOR2.
+ * ECHO_TIMES has a line for each path of sound: emitter, receiver, microseconds; `crates/eeruf-sim`'s example echo_times writes
+ * it. Pins are the Uno's numbers, or with --mega those of a Mega 2560; the same pin twice is a module with one pin. The
+ * sketch's serial output goes to standard output; then come lines that begin with `world`: firings of each module, triggers
+ * that came while its line was high, how often its latched line was pulled low, the greatest depth of the stack in bytes, and
+ * the share of time spent in interrupts, in millionths. With --pulses there is also a line for each pulse that sound has ended:
+ * the module from 1, the source of the sound (`own`, `earlier` for an earlier firing of its own, or `foreign`), and the pulse's
+ * width in microseconds. With --eeprom the board's EEPROM begins with these bytes. A byte that the sketch writes to GPIOR0
+ * prints a line, too: `read`, the byte, and the number in GPIOR1 (high) and GPIOR2.
  *
  * With --fault a module, counted from 1, has a fault: `cut`, its trigger is not connected, or it has no power; `deaf`, its
  * echo wire is cut; `glitch-high`, cut, with a spike of 5 us on its line 3 ms after each trigger; `glitch-low`, its pulse has
@@ -50,12 +50,12 @@ static struct Module {
 static int says_pulses;
 enum Fault { NONE, CUT, DEAF, GLITCH_HIGH, GLITCH_LOW, SPIKE, LOST_RISE, LOST_FALL, STUCK, LATCHED };
 static enum Fault fault;
-static int faulty = -1; /* the module with the fault, if one has one */
+static int faulty = -1; /* the module with the fault, if any */
 static unsigned hold_ms = 38; /* the faulty module's */
-static int partner = -1; /* the module with its echo wire */
+static int partner = -1; /* the module that has its echo wire */
 static int module_count;
 
-/* The pins of a board from 0 on, each by its port and bit; the last are A0 to A5 of an Uno, A0 to A15 of a Mega. */
+/* The pins of a board from 0 on, each with its port and bit; the last are A0 to A5 of an Uno, A0 to A15 of a Mega. */
 struct Board {
     const char *controller, *ports, *pins;
 };
@@ -82,7 +82,7 @@ static int index_of(char port) {
     return port - 'A';
 }
 
-/* True if the board itself holds a pin at a level. */
+/* True if the board itself drives a pin to a level. */
 static int is_driven(int pin, int level) {
     const int port = index_of(port_of(pin));
     return directions[port] >> bit_of(pin) & 1 && (ports[port] >> bit_of(pin) & 1) == level;
@@ -111,7 +111,7 @@ static void note_change(int pin) {
         avr_raise_interrupt(avr, &pin_changes[group]);
 }
 
-/* simavr 1.6 does not count where a timer counts to 255 and down again, as the core leaves timers 1 and 2, by clock / 64. */
+/* simavr 1.6 does not count with timers that go to 255 and down again, as the core sets timers 1 and 2, at clock / 64. */
 static struct Counter {
     uint16_t value, control; /* addresses: of TCNTnL, of TCCRnA */
     uint8_t clock;
@@ -156,7 +156,7 @@ static void set_line(struct Module *module, int high) {
     avr->data[PCICR] = changes;
 }
 
-/* Time for which a module holds its line when nothing comes, in microseconds. */
+/* Time for which a module holds its line without an echo, in microseconds. */
 static uint32_t held_us(const struct Module *module) {
     return module - modules == faulty ? 1000u * hold_ms : 38000u;
 }
@@ -195,7 +195,7 @@ static avr_cycle_count_t on_glitch(avr_t *a, avr_cycle_count_t when, void *param
     return 0;
 }
 
-/* simavr keeps one timer for each function and parameter, so sound on its way waits here. */
+/* simavr keeps one timer for each function and parameter, so pending sounds are kept here. */
 static struct {
     avr_cycle_count_t at;
     struct Module *module, *emitter;
@@ -239,7 +239,7 @@ static avr_cycle_count_t on_burst(avr_t *a, avr_cycle_count_t when, void *param)
     return 0;
 }
 
-/* A port's outputs or directions have changed. */
+/* Called when a port's outputs or directions have changed. */
 static void look_at_triggers(void) {
     int i;
     for (i = 0; i < module_count; i++) {
@@ -256,7 +256,7 @@ static void look_at_triggers(void) {
             module->triggered = 1;
         } else if (!high && module->triggered == 1) {
             module->triggered = 0;
-            /* Too short for a module. Data sheets ask for 10 us, of which delayMicroseconds(10) may take a little off. */
+            /* Too short for a module. Data sheets ask for 10 us; delayMicroseconds(10) may take a little less. */
             if (avr->cycle - module->fired < avr_usec_to_cycles(avr, 9)) continue;
             if (has(module, GLITCH_HIGH)) avr_cycle_timer_register_usec(avr, 3000, on_glitch, module);
             if (has(module, SPIKE) && !module->line_high) avr_cycle_timer_register_usec(avr, 250, on_glitch, module);
@@ -283,7 +283,7 @@ static void on_direction(struct avr_irq_t *irq, uint32_t value, void *param) {
     look_at_triggers();
 }
 
-/* By whole lines, so that others do not come in between. */
+/* Prints whole lines, so that others do not come in between. */
 static void on_serial(struct avr_irq_t *irq, uint32_t value, void *param) {
     static char line[200];
     static size_t length;
@@ -308,7 +308,7 @@ static void on_interrupt(struct avr_irq_t *irq, uint32_t value, void *param) {
     else interrupted += avr->cycle - interrupted_since;
 }
 
-/* `KIND:MODULE`. */
+/* Parses `KIND:MODULE`. */
 static int read_fault(const char *text) {
     static const char *const kinds[] = {"",          "cut",       "deaf",  "glitch-high", "glitch-low", "spike",
                                         "lost-rise", "lost-fall", "stuck", "latched"};
@@ -346,7 +346,7 @@ static void look_at_stack(void) {
 
 static uint8_t eeprom_bytes[64];
 
-/* Two digits a byte. */
+/* Parses hexadecimal bytes of two digits each. */
 static avr_eeprom_desc_t read_eeprom(const char *hex) {
     avr_eeprom_desc_t eeprom = {eeprom_bytes, 0, 0};
     unsigned byte;

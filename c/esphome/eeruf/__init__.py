@@ -1,4 +1,4 @@
-"""A ring of HC-SR04 modules in ESPHome, a sensor each; docs/how-to/boards.md has an example."""
+"""A ring of HC-SR04 modules in ESPHome, with a sensor for each; docs/how-to/boards.md has an example."""
 
 import esphome.codegen as cg
 import esphome.config_validation as cv

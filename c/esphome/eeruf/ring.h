@@ -18,11 +18,11 @@ static void IRAM_ATTR on_edge(Echo *echo) {
     (void)eeruf_edges_push(echo->edges, echo->sensor, echo->pin.digital_read(), micros());
 }
 
-// N modules that fire by flow, a sensor each: metres; infinity where nothing is in range, minus infinity for something too
-// close, NAN where neither is known.
+// N modules that fire by flow, each with a sensor in metres: infinity if nothing is in range, minus infinity if
+// something is too close, NAN if nothing is known.
 template <uint8_t N> class Ring : public PollingComponent {
 public:
-    // What one kind of module needs of EerufFlowConfig, and the pulse that is none of its echoes.
+    // The settings of EerufFlowConfig for one kind of module, and the shortest pulse that is not an echo.
     Ring(uint32_t window_us, uint32_t blanking_us, uint32_t least_us, uint32_t most_us, uint32_t rest_us, uint32_t longest_us) {
         config_.window_us = window_us;
         config_.blanking_us = blanking_us;
@@ -59,7 +59,7 @@ public:
 
     void loop() override {
         EerufEvent event;
-        const uint32_t now = micros(); // before the edges: then no window closes on one that came in time
+        const uint32_t now = micros(); // before the edges, so that no window closes on one that came in time
         (void)eeruf_hc_sr04_edges(&modules_, &edges_);
         while (eeruf_flow_poll(&ring_, now, &event) == EERUF_EVENT) {
             if (event.kind == EERUF_EVENT_FIRE) fire(event.sensor);

@@ -1,6 +1,6 @@
-// Three HC-SR04 modules on ESPHome's host platform, in place of its hal.cpp and gpio.cpp: the first is 1 m before a wall,
-// the second before nothing, and the third has no power. The trigger of each has an even pin, its echo line the next one. A
-// look at the clock takes 5 us, and the program ends after 10 s of its time.
+// Three HC-SR04 modules on ESPHome's host platform, in place of its hal.cpp and gpio.cpp: the first is 1 m from a wall,
+// the second faces nothing, and the third has no power. Triggers are on even pins, each with its echo line on the next
+// pin. A look at the clock takes 5 us, and the program ends after 10 s of its time.
 #include <cstdlib>
 
 #include "esphome/components/host/gpio.h"

@@ -1,9 +1,9 @@
 /* A board that runs c/zephyr/samples/ring on this machine, for two minutes of its own time, among HC-SR04 modules in a
- * room. It stands in for Zephyr, which CI cannot install: include/ declares, by Zephyr 4.2's documentation, the part
- * that the sample calls. Its main is compiled as sample_main.
+ * room. It stands in for Zephyr, which CI cannot install: include/ declares the part that the sample calls, after
+ * Zephyr 4.2's documentation. Its main is compiled as sample_main.
  *
- * The counter of cycles wraps each 51 s, and soon after the start. A sleep ends with a tick of 100 us, one or two later
- * than asked for. An interrupt comes when none are locked and none is handled. Each call takes time.
+ * The cycle counter wraps every 51 s, and soon after the start. A sleep ends at a tick of 100 us, one or two later than
+ * requested. An interrupt occurs when interrupts are unlocked and none is being handled. Each call takes time.
  *
  * A module whose trigger falls sends its sound 450 us later and raises its line, until the first sound reaches it, its
  * own or a neighbour's, or until 38 ms are over. It is deaf for the first 150 us. */
@@ -24,12 +24,12 @@
 #define NEVER UINT64_MAX
 
 /* Walls before the modules, in mm. CUT has no power, OPEN hears nothing at all, LOUD has no wall and hears both of its
- * neighbours. The line of STICKS sticks high for two seconds at a drawn time in each six. */
+ * neighbours. The line of STICKS sticks high for two seconds at a random time in every six. */
 enum { CUT = 2, OPEN = 5, STICKS = 6, LOUD = 7 };
 static const unsigned walls_mm[MODULES] = {500, 700, 600, 1500, 2000, 0, 900, 0};
-/* From a module to the one beside it. */
+/* The time of sound from a module to its neighbour. */
 #define BESIDE_US 900u
-/* The least number of firings of a module in a second, in hundredths. */
+/* The least number of firings of a module a second, in hundredths. */
 #define FIRINGS 1160u
 
 extern int sample_main(void);
@@ -53,7 +53,7 @@ static struct Module {
     char said[32];
 } modules[MODULES];
 
-/* Sounds under way. */
+/* Sounds in the air. */
 static struct {
     uint64_t at;
     int receiver;
@@ -107,14 +107,14 @@ static uint64_t next(void) {
     return first;
 }
 
-/* Until when a module's line sticks; 0 if it does not. */
+/* The time until which a module's line sticks; 0 if it does not. */
 static uint64_t stuck_until(int i) {
     const uint64_t turn = (cycles - began) / (6 * (uint64_t)HZ), drawn_us = turn * 2654435761u % 3900000u;
     const uint64_t from = began + turn * 6 * HZ + drawn_us * US, until = from + 2 * (uint64_t)HZ;
     return i == STICKS && cycles >= from && cycles < until ? until : 0;
 }
 
-/* Everything that is due. */
+/* Performs everything that is due. */
 static void happen(void) {
     for (int i = 0; i < MODULES; i++) {
         struct Module *module = &modules[i];
@@ -176,7 +176,7 @@ static void end(void) {
             expect(strcmp(module->said, "unanswered") == 0, "unanswered", i);
             continue;
         }
-        /* 20 times stuck for two seconds, which it must say, and never that nothing is there. */
+        /* Stuck 20 times for two seconds, which it must report, and never that nothing is there. */
         const unsigned lost_s = i == STICKS ? 40 : 0;
         expect(100 * module->firings >= (RUN_S - lost_s) * FIRINGS, "11.6 firings a second", i);
         expect(module->unanswered >= lost_s / 2, "that it does not answer while its line sticks", i);
@@ -197,7 +197,7 @@ int main(void) {
     return 1;
 }
 
-/* ---- As Zephyr has them ---- */
+/* ---- Zephyr's functions ---- */
 
 int sys_clock_hw_cycles_per_sec(void) {
     return HZ;

@@ -1,4 +1,4 @@
-// A sketch of three HC-SR04 modules that used NewPing, with one pin for each. What it was:
+// A sketch for three HC-SR04 modules with one pin each that used NewPing. The old code was:
 //
 //   #include <NewPing.h>
 //   NewPing sonar[3] = {NewPing(4, 4, 400), NewPing(5, 5, 400), NewPing(6, 6, 400)};

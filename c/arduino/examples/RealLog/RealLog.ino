@@ -1,8 +1,7 @@
-// A log of a real ring, to hold the simulator against: eight HC-SR04 modules, each with trigger and echo on one pin of the
-// Uno (2 to 9), that fire one by one, by flow, and as sketches do (wait for the echo, then 10 ms), each for 150 seconds.
-// Prints a row for each firing: sensor, time in microseconds, period, phase, echo time (none: nothing heard), way.
-// docs/how-to/real-log.md says what to measure beside it.
-// One read() takes up to 0.8 ms on an Uno.
+// A log of a real ring, to compare with the simulator: eight HC-SR04 modules, each with trigger and echo on one pin of
+// the Uno (2 to 9), that fire one by one, by flow, and as sketches do (wait for the echo, then 10 ms), each for 150
+// seconds. Prints a row for each firing: sensor, time in microseconds, period, phase, echo time (none: nothing heard),
+// way. docs/how-to/real-log.md says what else to measure. One read() takes up to 0.8 ms on an Uno.
 #include <EerufFlow.h>
 
 #ifndef SECONDS
@@ -13,7 +12,7 @@ const uint8_t MODULES = sizeof PINS;
 EerufFlow<MODULES> sonar(PINS);
 enum Way : uint8_t { SEQUENTIAL, FLOW, BLOCKING, WAYS } way = BLOCKING;
 uint32_t firedUs[MODULES], begunMs, period = 0;
-uint8_t next = 0; // of those that are waited for
+uint8_t next = 0; // the next module to wait for
 
 void row(uint8_t sensor, uint32_t us, uint32_t echo) {
   Serial.print(sensor);
@@ -46,7 +45,7 @@ void begin(Way chosen) {
   sonar.tell(tell);
 }
 
-// As most sketches fire; pulseIn() does the same.
+// Fires as most sketches do: like pulseIn().
 void wait(uint8_t sensor) {
   const uint8_t pin = PINS[sensor];
   EerufPin::trigger(pin, pin);

@@ -1,6 +1,5 @@
-// Eight HC-SR04 modules around a robot with two pins each: triggers on 2 to 9, echoes on 10 to 13 and A0 to A3.
-// Says what becomes of each firing, and which modules do not answer.
-// One read() takes up to 0.8 ms on an Uno.
+// Eight HC-SR04 modules around a robot with two pins each: triggers on 2 to 9, echoes on 10 to 13 and A0 to A3. Prints
+// the outcome of each firing, and which modules do not answer. One read() takes up to 0.8 ms on an Uno.
 #include <EerufTables.h>
 
 const uint8_t TRIGGERS[] = {2, 3, 4, 5, 6, 7, 8, 9};

@@ -1,6 +1,6 @@
-// Four HC-SR04 modules with trigger and echo on one pin each, 2 to 5, for a robot that asks now and then what is before
-// it: twenty times a second it says of each module what stands there, for how long, or why that is not known.
-// One read() takes up to 0.7 ms on an Uno.
+// Four HC-SR04 modules with trigger and echo on one pin each, 2 to 5, for a robot that checks its surroundings now and
+// then: twenty times a second it prints what is in front of each module, since when, or why nothing is known. One
+// read() takes up to 0.7 ms on an Uno.
 #include <EerufTables.h>
 
 const uint8_t PINS[] = {2, 3, 4, 5};
@@ -34,7 +34,7 @@ void say(uint8_t sensor) {
 void loop() {
   if (sonar.tooSlow()) Serial.println(F("loop() is too slow"));
   sonar.read();
-  // One at a time: a line of text takes longer than a firing may be late.
+  // One module at a time: a line of text takes longer than a firing may be late.
   static uint8_t sensor;
   if (micros() - said < 12500) return;
   said = micros();

@@ -1,6 +1,6 @@
-// A measuring run of up to sixteen HC-SR04 modules with one pin each: which of them hear each other, and after which
-// time. Each fires alone, then each ordered pair with twenty leads of one before the other. Prints a log for
-// `eeruf survey`, as eeruf_core::Survey has it; with four modules that takes half a minute, with eight two.
+// A measuring run of up to sixteen HC-SR04 modules with one pin each: it finds which of them hear each other, and after
+// what time. Each fires alone, then each ordered pair with twenty leads. Prints a log for `eeruf survey`, like
+// eeruf_core::Survey; four modules take half a minute, eight take two minutes.
 #define EERUF_POLLED // no interrupts
 #include <EerufArduino.h>
 
@@ -10,7 +10,7 @@ const uint8_t SOLOS = 3, LEADS = 20;
 const uint16_t LEAD_US = 750;      // from one lead to the next
 const uint16_t WINDOW_US = 40000;  // a module without echo holds its line for 38 ms
 const uint16_t NO_ECHO_US = 30000;
-const uint16_t QUIET_US = 57000;   // for so long sound is on its way
+const uint16_t QUIET_US = 57000;   // sound travels for this long
 
 enum State : uint8_t { WAITS, TRIGGERED, LISTENS, OVER };
 struct Line {
@@ -21,7 +21,7 @@ struct Line {
 
 uint16_t slot = 0;
 
-// The sound goes out when the line rises, and the line falls with the first sound that comes.
+// The sound leaves when the line rises; the line falls with the first sound that arrives.
 void look(Line &line, uint32_t begun) {
   const uint8_t pin = PINS[line.module];
   if (line.state == WAITS && micros() - begun >= line.after) EerufPin::trigger(pin, pin);
@@ -31,7 +31,7 @@ void look(Line &line, uint32_t begun) {
   line.state = State(line.state + 1);
 }
 
-// The module from 0, the time at which it fired, the slot, and the echo time, if there was an echo.
+// Prints the module from 0, the time of its firing, the slot, and the echo time if there was an echo.
 void print(const Line &line) {
   if (line.state < LISTENS) return;
   Serial.print(line.module);

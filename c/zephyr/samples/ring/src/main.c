@@ -1,5 +1,5 @@
 /* A ring of HC-SR04 modules on Zephyr. Interrupts stamp the edges of the echo lines, the main thread fires by flow, and
- * once a second the log says what is before each module. */
+ * once a second the log says what is in front of each module. */
 #include <zephyr/device.h>
 #include <zephyr/devicetree.h>
 #include <zephyr/drivers/gpio.h>
@@ -31,8 +31,8 @@ static EerufWatch watch;
 static EerufWatched watched[SENSORS];
 static const EerufHcSr04Settings settings = EERUF_HC_SR04;
 
-/* Microseconds that wrap at 32 bits. The counter of cycles wraps sooner, so that its steps are added up: call it at
-   least once each 2^32 cycles, which are 51 s at 84 MHz. */
+/* Microseconds that wrap at 32 bits. The cycle counter wraps sooner, so its steps are summed: call this at least once
+   every 2^32 cycles, which are 51 s at 84 MHz. */
 static uint32_t now_us(void) {
     static uint32_t cycles_before, us;
     static uint64_t rest; /* of a microsecond, in 1/1,000,000 of a cycle */
@@ -122,7 +122,7 @@ int main(void) {
     uint32_t reported = now_us();
     for (;;) {
         EerufEvent event;
-        /* Before the edges are taken: then no window closes on an edge that came in time. */
+        /* Before the edges are taken, so that no window closes on an edge that came in time. */
         const uint32_t now = now_us();
         (void)eeruf_hc_sr04_edges(&modules, &edges);
         while (eeruf_flow_poll(&ring, now, &event) == EERUF_EVENT) {

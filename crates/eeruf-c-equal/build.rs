@@ -1,4 +1,4 @@
-//! Compiles the C library and the flat functions through which it is called.
+//! Compiles the C library, with the flat functions through which Rust calls it.
 
 fn main() {
     let (c, shim) = ("../../c", "src/shim.c");

@@ -1,4 +1,4 @@
-//! Events and errors of `eeruf-core` as the numbers that C gives.
+//! Events and errors of `eeruf-core`, converted to the numbers that C returns.
 
 use eeruf_core::{
     Micros, PeriodStats, Phase, Reading, ReadingKind, RingError, RingEvent, Tally,
@@ -50,7 +50,7 @@ pub fn echo(t_echo: Option<Micros>) -> u32 {
     t_echo.map_or(NO_ECHO, Micros::as_micros)
 }
 
-/// Returns coming firings as numbers: sensor and instant.
+/// Returns upcoming firings as numbers: sensor and instant.
 pub fn upcoming(upcoming: impl Iterator<Item = Upcoming>) -> Vec<[u32; 2]> {
     upcoming.map(|Upcoming { sensor, due, .. }| [sensor.into(), due.as_micros()]).collect()
 }

@@ -1,4 +1,4 @@
-//! Flow rings.
+//! Comparison of flow rings in Rust and C.
 
 use crate::core_side::{echo, flat, state, status_of, upcoming};
 use crate::world::{World, hear, measure, same, set_silence};
@@ -36,8 +36,8 @@ fn settings(r: &Random) -> (TurnSettings, BeliefSettings) {
     (turns, belief)
 }
 
-/// Limits of each sensor, also as numbers for C: of each sensor window, `t_delta`, group and line. Some fire together,
-/// some share an echo line: two sets of each at most.
+/// Draws the limits of each sensor, also as numbers for C: window, `t_delta`, group and line. Some sensors fire
+/// together, some share an echo line, in at most two sets each.
 fn own_limits<const K: usize>(r: &Random, window: u32) -> (EachSensor<K>, Vec<u32>) {
     let t_deltas = [(); K].map(|()| Micros::new(r.within(0, 200)));
     let windows = [(); K].map(|()| Micros::new(r.one_of(&[window, window, r.within(1, window.max(1))])));
@@ -56,7 +56,7 @@ fn own_limits<const K: usize>(r: &Random, window: u32) -> (EachSensor<K>, Vec<u3
     let requirements =
         Requirements { window: Micros::new(window), uneven: Some(uneven), ..Requirements::new(Micros::new(200)) };
     let limits = TurnSettings::limits(K, &requirements).expect("one value for each sensor, and sets that are apart");
-    // A sensor alone in its set is in none.
+    // A sensor that is alone in its set belongs to no set.
     let set_of = |sets: [u32; K], x: usize| if members(sets, sets[x]).count_ones() > 1 { sets[x] } else { 0 };
     let of_each = |x: usize| [windows[x].as_micros(), t_deltas[x].as_micros(), set_of(groups, x), set_of(lines, x)];
     (limits, (0..K).flat_map(of_each).collect())
@@ -65,17 +65,17 @@ fn own_limits<const K: usize>(r: &Random, window: u32) -> (EachSensor<K>, Vec<u3
 /// Runs one flow ring for up to 4,000 steps, or until the random bytes end. Returns the number of events.
 ///
 /// # Panics
-/// Where C and Rust differ.
+/// If C and Rust differ.
 pub fn run<const K: usize>(r: &Random) -> u64 {
     let mut c = C::new();
     let (t, mut b) = settings(r);
     let window = r.one_of(&[25_000, 36_000, 36_000, r.within(1, 40_000), r.duration(4_000_001)]);
     if window > 4_000_000 {
-        // One error at a time, since their order is free.
+        // One error at a time, since their order is unspecified.
         b = BeliefSettings::DEFAULT;
     }
     let blanking = r.one_of(&[0, 300, 2_380, r.duration(40_000)]);
-    // Also where the clock begins, at which sensors would seem to have just fired.
+    // Also close to 0, where sensors would seem to have just fired.
     let start = r.one_of(&[r.any() as u32, r.duration(50_000)]);
     let mut numbers = vec![window, blanking];
     numbers.extend([t.least, t.most, t.rest, t.dice].map(Micros::as_micros));
@@ -134,7 +134,7 @@ fn compare<const K: usize, U: OwnLimits>(
             hear((&world.random, uncertain), &mut c, &mut ring, edge);
         }
         if world.random.once_in(4) {
-            // A line that was held falls, its reading out or not.
+            // A held line falls, before or after its reading.
             let sensor = world.random.within(0, K as u32) as u8;
             same(&mut c, Do::Answered, sensor, 0, ring.answered(sensor));
         }

@@ -1,8 +1,8 @@
 //! Safe wrappers of the C library in `c/`, and its comparison with the Rust crates: rings of each kind run in both
-//! languages on the same random numbers and must give the same results. Tests draw the numbers from seeds, the fuzz
-//! target takes them from bytes.
+//! languages on the same random numbers and must give the same results. Tests draw these from seeds, the fuzz target
+//! from bytes.
 //!
-//! Nothing here is for others: firmware in Rust uses `eeruf-core`, firmware in C uses `c/eeruf.h`.
+//! For tests only: firmware in Rust uses `eeruf-core`, firmware in C uses `c/eeruf.h`.
 
 pub mod core_side;
 pub mod flow;
@@ -19,7 +19,7 @@ use eeruf_core::{Micros, Phase, Schedule, VerifiedSchedule, conditions::Verified
 
 pub use random::Random;
 
-/// An event as numbers: kind, sensor, phase, then fields of that kind.
+/// An event as numbers: kind, sensor, phase, then the fields of that kind.
 pub type Flat = [u32; 18];
 /// The number that stands for no echo, on both sides.
 pub const NO_ECHO: u32 = u32::MAX;
@@ -55,7 +55,7 @@ pub enum Do {
     SetReportAfter,
 }
 
-/// An echo time known to be between two values.
+/// Functions that take an echo or edge between two values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[expect(missing_docs, reason = "named as the functions of eeruf.h")]
 pub enum Between {
@@ -90,7 +90,7 @@ impl Claim {
 /// Needs of one sensor: `window_us`, `t_delta_us` and `group` of an EerufLimits.
 pub type OwnNeeds = [u32; 3];
 
-/// A ring in C, of either kind, with its schedules and modules, in memory of exactly the size that it needs.
+/// A ring in C, of either kind, with its schedules and modules, in memory of exactly the required size.
 #[derive(Debug)]
 pub struct C(*mut c_void);
 
@@ -114,7 +114,7 @@ impl C {
         Self(unsafe { shim::shim_new() })
     }
 
-    /// Adds a schedule as a table, not verified. Schedules are numbered in order.
+    /// Adds a schedule as an unverified table. Schedules are numbered in order.
     pub fn schedule<const K: usize, const M: usize>(&mut self, schedule: &Schedule<K, M>) {
         let (mut order, mut gaps) = (vec![], vec![]);
         for phase in (0..M as u8).map(Phase) {
@@ -128,11 +128,11 @@ impl C {
         }
         let [period, min_refire] = [schedule.period(), schedule.min_refire()].map(Micros::as_micros);
         let (sensors, order, gaps) = (schedule.sensors() as u8, order.as_ptr(), gaps.as_ptr());
-        // SAFETY: as many numbers as sensors and phases ask for.
+        // SAFETY: as many numbers as sensors and phases need.
         unsafe { shim::shim_schedule(self.0, period, min_refire, sensors, M as u8, order, gaps) }
     }
 
-    /// A schedule that was verified, as a table.
+    /// Adds a verified schedule as a table.
     ///
     /// # Panics
     /// If C does not verify it.
@@ -166,7 +166,7 @@ impl C {
         if status == EVENT { Ok(flat) } else { Err(status) }
     }
 
-    /// `eeruf_ring_upcoming` until there is none: sensors and instants.
+    /// Calls `eeruf_ring_upcoming` until there is none: sensors and instants.
     pub fn upcoming(&self) -> Vec<[u32; 2]> {
         let next = |number| {
             let mut out = [0; 2];
@@ -177,7 +177,7 @@ impl C {
         (0..=u8::MAX).map_while(next).collect()
     }
 
-    /// `eeruf_watch_init`: the events of polls from now on are handed to it.
+    /// Calls `eeruf_watch_init`; later polls pass their events to the watch.
     pub fn watch(&mut self, sensors: u8, now_us: u32) -> i32 {
         // SAFETY: any numbers will do.
         unsafe { shim::shim_watch(self.0, sensors, now_us) }
@@ -209,13 +209,13 @@ impl C {
         unsafe { shim::shim_between(self.0, what as u32, sensor, least, most) }
     }
 
-    /// Makes the last event, a reading, an ambiguous one.
+    /// Makes the last event, a reading, ambiguous.
     pub fn explain(&mut self, explained_by: u8) {
         // SAFETY: an event that was polled.
         unsafe { shim::shim_explain(self.0, explained_by) }
     }
 
-    /// The frame that `eeruf_serial_event` makes of the last poll's event, empty if it makes none.
+    /// The frame that `eeruf_serial_event` makes from the last poll's event; empty if there is none.
     pub fn serial_event(&mut self, sensors: u8, now_us: u32) -> Vec<u8> {
         // As long as EERUF_FRAME.
         let mut frame = vec![0; 78];

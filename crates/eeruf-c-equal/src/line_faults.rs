@@ -23,7 +23,7 @@ pub const FAULTY: u8 = 1;
 const PERIODS: u32 = 100;
 const T_DELTA_US: u32 = 240;
 const WINDOW_US: u32 = 40_000;
-/// Edges of a healthy module, before a wall at 1 m and before nothing.
+/// Edges of a healthy module that faces a wall at 1 m, and of one that faces nothing.
 const WALL: [Play; 2] = [Play { us: 450, high: true, is_lost: false }, Play { us: 6_280, high: false, is_lost: false }];
 const NOTHING: [Play; 2] = [WALL[0], Play { us: 38_450, high: false, is_lost: false }];
 
@@ -37,12 +37,12 @@ pub struct Play {
     is_lost: bool,
 }
 
-/// Connection of the faulty sensor's line.
+/// The connection of the faulty sensor's line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Wiring {
     /// To the sensor's own pin.
     Own,
-    /// To the pin of this sensor, whose own line goes to the faulty one's pin.
+    /// To the pin of this sensor, whose own line goes to the faulty sensor's pin.
     Exchanged(u8),
     /// To the sensor's own pin, but without the call that the driver needs.
     Forgotten,
@@ -87,7 +87,7 @@ pub struct Faults {
 }
 
 impl Fault {
-    /// The number of readings until two pulses of its line are over, so that silence counts twice.
+    /// Number of readings until two pulses of the line are over, so that silence counts twice.
     pub fn two_pulses(&self, period_us: u32) -> usize {
         let falls = self.edges.last().map_or(0, |edge| edge.us);
         (2 * falls.div_ceil(period_us)).saturating_sub(1) as usize
@@ -98,7 +98,7 @@ impl Faults {
     /// Reads the file's text.
     ///
     /// # Panics
-    /// If a line is not as the file's head says.
+    /// If a line does not have the format that the head of the file describes.
     pub fn read(text: &str) -> Self {
         let rows = text.lines().filter(|line| !line.starts_with('#'));
         let mut rows = rows.map(|line| line.split('|').map(str::trim).collect::<Vec<_>>());
@@ -152,10 +152,10 @@ struct Wires {
     triggered: Cell<Option<u8>>,
 }
 
-/// A driver of a ring on [`Wires`], as a program uses it that may forget a call for the faulty sensor.
+/// A driver of a ring on [`Wires`], used by a program that may forget a call for the faulty sensor.
 trait Driver {
     fn deadline(&self) -> u32;
-    /// The next event; the sensor that fires is triggered if the driver lets it.
+    /// Returns the next event; triggers the sensor that fires if the driver allows it.
     fn poll(&mut self, now: u32) -> Option<Flat>;
     fn edge(&mut self, sensor: u8, high: bool, at: u32);
     /// Returns a state in the form of [`core_side::state`](state).
@@ -227,7 +227,7 @@ impl Driver for InRust<'_> {
     }
 
     fn edge(&mut self, sensor: u8, high: bool, at: u32) {
-        // It triggers by itself; what can be forgotten is to hand in edges.
+        // The driver triggers by itself; the program can only forget to report edges.
         if !(self.forgets && sensor == FAULTY) {
             self.ring.edge(Edge { sensor, high, at: Instant::from_micros(at) }).unwrap();
         }
@@ -271,7 +271,7 @@ impl Driver for InC {
         if event[0] == 0 {
             let sensor = event[1] as u8;
             let level = u8::from(self.wires.levels[usize::from(sensor)].get());
-            // A program that forgets to say that it fires triggers all the same.
+            // A program that forgets to report a firing still triggers.
             let forgets = self.forgets && sensor == FAULTY;
             if forgets || ring.call(Do::FireModule, sensor | level << 7, now) == 0 {
                 self.wires.triggered.set(Some(sensor));
@@ -296,7 +296,7 @@ impl Driver for InC {
 /// A reading of the faulty sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Said {
-    /// The kind of reading, as [`ReadingKind`] counts.
+    /// The kind of reading, numbered as [`ReadingKind`].
     pub kind: u32,
     /// The state after the event, in the form of [`core_side::state`](state).
     pub state: [u32; 5],
@@ -321,7 +321,7 @@ impl Said {
     }
 }
 
-/// Readings of a run: those of the faulty sensor, and those of the one whose wire it has.
+/// Readings of a run: of the faulty sensor, and of the sensor whose wire is exchanged with it.
 #[derive(Clone, Debug, Default)]
 pub struct Outcome {
     /// Readings of the faulty sensor.
@@ -330,7 +330,7 @@ pub struct Outcome {
     pub partner: Vec<Said>,
 }
 
-/// The fault begins `onset_us` after the start; until then its sensor is well and before a wall.
+/// Runs a driver. The fault begins `onset_us` after the start; until then the sensor is well and faces a wall.
 fn run(driver: &mut dyn Driver, wires: &Wires, fault: &Fault, onset_us: u32, start: u32) -> Outcome {
     let partner = if let Wiring::Exchanged(with) = fault.wiring { Some(with) } else { None };
     let (mut outcome, mut periods, mut now) = (Outcome::default(), 0, start);
@@ -358,7 +358,7 @@ fn run(driver: &mut dyn Driver, wires: &Wires, fault: &Fault, onset_us: u32, sta
                     _ if Some(sensor) == partner => &NOTHING,
                     _ => &WALL,
                 };
-                // A module whose line is high does not hear its trigger.
+                // A module whose line is high ignores its trigger.
                 if !wires.levels[usize::from(line)].get() {
                     edges.extend(played.iter().map(|&play| (now.wrapping_add(play.us), line, play)));
                 }
@@ -378,8 +378,8 @@ fn run(driver: &mut dyn Driver, wires: &Wires, fault: &Fault, onset_us: u32, sta
     outcome
 }
 
-/// Runs the drivers of Rust and of C, in this order, for 100 periods with a fault, which begins this many microseconds
-/// after the start.
+/// Runs the drivers of Rust and of C, in this order, for 100 periods, with a fault that begins `onset_us` after the
+/// start.
 ///
 /// # Panics
 /// If the drivers refuse the ring.

@@ -1,4 +1,4 @@
-//! Rings of HC-SR04 modules.
+//! Comparison of rings of HC-SR04 modules in Rust and C.
 
 use std::cell::Cell;
 
@@ -117,7 +117,7 @@ fn pulse(r: &Random, edges: &mut Vec<(u32, u8, bool)>, now: u32, sensor: u8, wid
 /// Runs one ring of modules for up to 3,000 steps, or until the random bytes end. Returns the number of events.
 ///
 /// # Panics
-/// Where C and Rust differ.
+/// If C and Rust differ.
 pub fn run(r: &Random) -> u64 {
     let mut c = C::new();
     let schedule = schedule(r, &mut c);
@@ -132,7 +132,7 @@ pub fn run(r: &Random) -> u64 {
     let status = c.modules(settings.min_retrigger.as_micros(), settings.shortest.as_micros() as u16);
     let fault = Cell::new(Fault::default());
     if r.once_in(4) {
-        // A timer triggers them, and pulses may be measured by it.
+        // A timer triggers the modules, and may measure their pulses.
         let modules = HcSr04Ring::by_hardware(ring, settings);
         return compare(r, c, status, modules, (start, None), HcSr04Ring::poll_triggered);
     }
@@ -144,7 +144,7 @@ pub fn run(r: &Random) -> u64 {
 /// A ring of modules on pins, or on none.
 type Modules<'s, T, I, D> = HcSr04Ring<ScheduledRing<'s, K>, T, I, D, K>;
 
-/// Runs both rings, if both can be made. `faults` are those of the pins, if any.
+/// Runs both rings, if both can be made. `faults` are the faults of the pins, if any.
 fn compare<'s, T, I, D>(
     r: &Random,
     mut c: C,
@@ -180,7 +180,7 @@ fn compare<'s, T, I, D>(
         for (at, sensor, high) in due {
             let (with_level, latest) = (sensor | u8::from(high) << 7, Instant::from_micros(at));
             if uncertain {
-                // C keeps by how much sooner a line may have risen in units of 8 us.
+                // C stores how much sooner a line may have risen in units of 8 us.
                 let units = r.one_of(&[0, r.within(0, 30), r.within(0, 254)]);
                 let since = at.wrapping_sub(c.call(Do::FiredAt, sensor, 0) as u32);
                 let before = if high { 8 * units.min(since / 8) } else { r.one_of(&[units, r.duration(60_000)]) };

@@ -31,7 +31,7 @@ impl Random {
         Self(Source::Seed(seed, Cell::new(seed)))
     }
 
-    /// Draws from bytes: each number takes the bytes that it needs, little-endian. Past the end all are 0.
+    /// Draws from bytes: each number takes the bytes that it needs, little-endian. Past the end all numbers are 0.
     pub fn of_bytes(bytes: &[u8]) -> Self {
         Self(Source::Bytes(bytes.into(), Rc::default()))
     }
@@ -83,7 +83,7 @@ impl Random {
         ((self.any_of(4) & 0xffff_ffff) as u32).checked_shr(32 - bits).unwrap_or(0).min(most)
     }
 
-    /// Draws one of these.
+    /// Draws one of these values.
     pub fn one_of<T: Copy>(&self, these: &[T]) -> T {
         these[self.within(0, these.len() as u32 - 1) as usize]
     }
@@ -103,7 +103,7 @@ mod tests {
 
     #[test]
     fn a_seed_gives_the_numbers_of_splitmix64() {
-        // The first of the reference's for the seed 1,234,567.
+        // The first number of the reference implementation for the seed 1,234,567.
         assert_eq!(Random::new(1_234_567).any(), 6_457_827_717_110_365_317);
         assert!(!Random::new(0).is_over());
     }

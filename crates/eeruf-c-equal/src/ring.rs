@@ -1,4 +1,4 @@
-//! Rings that fire by tables.
+//! Comparison of rings that fire by tables in Rust and C.
 
 use crate::core_side::{flat, state, status_of, status_of_violation, upcoming};
 use crate::{C, Claim, Do, OwnNeeds, Random};
@@ -72,14 +72,14 @@ impl Verify for Schedule<K, 2> {
         let [t_delta, _, window, separation, path_change, audible] = claim.verified_for;
         let as_asked = [t_delta, needs.min_interval_us, window, separation, path_change, audible];
         assert_eq!(c.verified(number, Claim { verified_for: as_asked, ..needs.claim() }, own), 0);
-        // One that was not verified so is not taken.
+        // A schedule that was not verified for this is refused.
         let off = Claim { verified_for: [t_delta, 0, window, separation ^ 1, path_change, audible], ..needs.claim() };
         assert_eq!(c.verified(number, off, own), -10);
         let schedule = *verified.schedule();
         if own.is_empty() {
             return (schedule, EachSensor::NONE);
         }
-        // Single pairs may keep other intervals, as tables say.
+        // Single pairs may keep other intervals, as tables of OTHER layout do.
         assert_eq!(c.verified(number, Claim { stale_echo: needs.stale_echo, ..claim }, own), 0);
         (schedule, *verified.own_limits())
     }
@@ -156,7 +156,7 @@ type Table<'s, const M: usize> = Ring<ScheduledFiring<'s, K, M, &'s EachSensor<K
 /// A schedule, and the limits of each sensor that it allows.
 type Fires<const M: usize> = (Schedule<K, M>, EachSensor<K>);
 
-/// Draws actions that a caller may take now and then.
+/// Performs a random action that a caller may take now and then.
 fn act<const M: usize>(r: &Random, c: &mut C, ring: &mut Table<'_, M>, now: u32) {
     let sensor = r.within(0, ring.sensors() as u32) as u8;
     match r.within(0, 12) {
@@ -191,7 +191,7 @@ fn act<const M: usize>(r: &Random, c: &mut C, ring: &mut Table<'_, M>, now: u32)
 /// Runs one ring for up to 3,000 steps, or until the random bytes end. Returns the number of events.
 ///
 /// # Panics
-/// Where C and Rust differ.
+/// If C and Rust differ.
 pub fn run<const M: usize>(r: &Random) -> u64
 where
     Schedule<K, M>: Verify,
@@ -238,7 +238,7 @@ where
             hear((&world.random, uncertain), &mut c, &mut ring, edge);
         }
         if world.random.once_in(4) {
-            // A line that was held falls, its reading out or not.
+            // A held line falls, before or after its reading.
             let sensor = world.random.within(0, u32::from(sensors)) as u8;
             same(&mut c, Do::Answered, sensor, 0, ring.answered(sensor));
         }

@@ -1,5 +1,5 @@
-/* The C library as functions of numbers and one kind of handle, so that Rust need not know its structures. Memory of
-   exactly the size that a ring needs comes from malloc, where a sanitizer sees each byte beyond it. */
+/* The C library as functions of numbers and one kind of handle, so that Rust need not know its structures. A ring's
+   memory has exactly the required size and comes from malloc, so that a sanitizer sees each access beyond it. */
 #include "eeruf.h"
 #include "eeruf_serial.h"
 
@@ -49,7 +49,7 @@ void shim_free(Handle *handle) {
     free(handle);
 }
 
-/* Schedules are numbered as they are made; nothing is verified of them yet. */
+/* Schedules are numbered as they are made, and not verified yet. */
 void shim_schedule(Handle *handle, uint32_t period_us, uint32_t min_refire_us, uint8_t sensors, uint8_t phases,
                    const uint8_t *order, const uint32_t *gap_us) {
     EerufSchedule *schedule = (EerufSchedule *)calloc(1, sizeof *schedule);
@@ -77,8 +77,8 @@ static EerufLimits *limits_of(uint8_t sensors, const uint32_t *own, uint8_t numb
     return limits;
 }
 
-/* Notes the requirements of a schedule, if eeruf_schedule_check says so; else it was not. `numbers`: t_delta, interval,
-   window, separation, path change, audible; layout, neighbours, stale echo. */
+/* Stores the requirements of a schedule if eeruf_schedule_check accepts them. `numbers`: t_delta, interval, window,
+   separation, path change, audible; layout, neighbours, stale echo. */
 int shim_verified(Handle *handle, unsigned number, const uint32_t *numbers, const uint32_t *own) {
     EerufSchedule *schedule = handle->schedules[number];
     const EerufSchedule before = *schedule;
@@ -162,7 +162,7 @@ int shim_watch(Handle *handle, uint8_t sensors, uint32_t now_us) {
     return eeruf_watch_init(&handle->watch, sizeof handle->watch, handle->watched, size, now_us);
 }
 
-/* `out`: kind, echo, age, why, by whom explained. */
+/* `out`: kind, echo, age, why, explained by. */
 int shim_state(const Handle *handle, uint8_t sensor, uint32_t now_us, uint32_t *out) {
     EerufState state = {0, 0, 0, 0, 0};
     const EerufStatus status = eeruf_watch_state(&handle->watch, sensor, now_us, &state);
@@ -178,7 +178,7 @@ uint32_t shim_deadline(const Handle *handle) {
     return eeruf_ring_deadline(handle->ring);
 }
 
-/* Questions to a running ring, by number. */
+/* Calls of functions on a running ring, by number. */
 int shim_do(Handle *handle, unsigned what, uint8_t sensor, uint32_t value) {
     EerufRing *ring = handle->ring;
     switch (what) {
@@ -275,7 +275,7 @@ int shim_moving(Handle *handle, uint32_t speed_mm_s, uint32_t turn_mrad_s, uint3
     return eeruf_flow_moving(handle->flow, speed_mm_s, turn_mrad_s, now_us);
 }
 
-/* `out`: quiet, and the echo time that is believed. */
+/* `out`: quiet, and the believed echo time. */
 void shim_quiet(const Handle *handle, uint8_t sensor, uint32_t *out) {
     out[0] = eeruf_flow_quiet_us(handle->flow, sensor);
     out[1] = eeruf_flow_believed_us(handle->flow, sensor);
@@ -302,13 +302,13 @@ int shim_edges_pop(uint32_t *out) {
     return status;
 }
 
-/* Makes the last event, a reading, an ambiguous one. */
+/* Makes the last event, a reading, ambiguous. */
 void shim_explain(Handle *handle, uint8_t explained_by) {
     handle->last.u.reading.kind = EERUF_READING_AMBIGUOUS;
     handle->last.u.reading.explained_by = explained_by;
 }
 
-/* Says over a line what the last poll's event was; the size of the frame. */
+/* Makes the serial frame of the last poll's event; returns its size. */
 size_t shim_serial_event(Handle *handle, uint8_t sensors, uint32_t now_us, uint8_t *frame) {
     if (handle->line.clock == NULL) {
         const EerufSerial line = EERUF_SERIAL(handle->late_us, sensors, "board of sixteen letters");

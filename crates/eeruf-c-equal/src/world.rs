@@ -4,7 +4,7 @@ use crate::core_side::status_of;
 use crate::{Between, C, Do, Random};
 use eeruf_core::{Instant, Micros, Ring, Silence, judge::Judge, plan::Plan};
 
-/// A clock that is late, jumps and wraps, and coming echoes.
+/// A clock that is late, jumps and wraps, with the echoes to come.
 pub struct World {
     /// The source of random numbers.
     pub random: Random,
@@ -12,14 +12,14 @@ pub struct World {
     pub now: u32,
     /// Largest lateness of polls in this run.
     late: u32,
-    /// Echo time of the obstacle before each sensor.
+    /// Echo time of the obstacle in front of each sensor.
     distance_us: Vec<u32>,
     window_us: u32,
     echoes: Vec<(u32, u8)>,
 }
 
 impl World {
-    /// Draws a start time, and an obstacle before each sensor.
+    /// Draws a start time, and an obstacle in front of each sensor.
     pub fn new(random: Random, sensors: u8, window_us: u32) -> Self {
         // Clocks wrap in many runs.
         let now = if random.once_in(2) { 0_u32.wrapping_sub(random.duration(5_000_000)) } else { random.any() as u32 };
@@ -65,7 +65,7 @@ impl World {
         }
     }
 
-    /// Returns the echoes due by now, and now and then one that is early, out of order, or of no sensor.
+    /// Returns the echoes due by now, sometimes with one that is early, out of order, or of no sensor.
     pub fn heard(&mut self) -> Vec<(u32, u8)> {
         let now = self.now;
         let mut heard: Vec<_> = self.echoes.extract_if(.., |(at, _)| now.wrapping_sub(*at) < 1 << 31).collect();
@@ -77,7 +77,7 @@ impl World {
             heard.reverse();
         }
         if self.echoes.len() > 200 {
-            // Of a time that the clock has left.
+            // They belong to the time before the jump.
             self.echoes.clear();
         }
         heard
@@ -87,7 +87,7 @@ impl World {
 /// Makes the same call in C, and checks that both sides accept or refuse the sensor.
 ///
 /// # Panics
-/// Where they differ.
+/// If they differ.
 pub fn same<E>(c: &mut C, what: Do, sensor: u8, value: u32, rust: Result<(), E>) {
     let expected = if rust.is_ok() { 0 } else { -5 };
     assert_eq!(c.call(what, sensor, value), expected, "{what:?} of sensor {sensor}, {value}");
@@ -116,7 +116,7 @@ pub(crate) fn hear<P: Plan, J: Judge, const K: usize, const E: usize, const H: u
     assert_eq!(c.between(Between::Echo, sensor, earliest, latest), expected, "{earliest} {latest}");
 }
 
-/// Reports a measured echo time, none or, if times are uncertain, one between two.
+/// Reports a measured echo time, silence or, if times are uncertain, an echo time between two.
 pub(crate) fn measure<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize>(
     (r, uncertain): (&Random, bool),
     c: &mut C,

@@ -1,7 +1,7 @@
 //! The control: a ring without the fault. It fires at the same instants as the board's ring and gets the same edges,
-//! except for one sensor, whose line is well and always shows a wall.
+//! except for one sensor, whose line is healthy and always shows a wall.
 //!
-//! What it reads with all other sensors is what they would read without the fault.
+//! The readings of all other sensors are those that they would have without the fault.
 
 use core::convert::Infallible;
 
@@ -15,7 +15,7 @@ use crate::reference::{HostRing, Read, on_pins};
 const RISE: Micros = Micros::new(460);
 const FALL: Micros = Micros::new(12_460);
 
-/// A pin that does nothing: a trigger, or an echo line that is low when it is looked at.
+/// A pin that does nothing: a trigger, or an echo line that always reads low.
 struct Idle;
 
 impl ErrorType for Idle {
@@ -42,7 +42,7 @@ impl InputPin for Idle {
     }
 }
 
-/// The ring without the fault, and what it reads.
+/// The ring without the fault, and its readings.
 pub(crate) struct Control {
     ring: HostRing<ScheduledRing<'static, SENSORS>, Idle>,
     /// The sensor that is healthy here.
@@ -65,7 +65,7 @@ impl Control {
         self.ring.edge(edge).map_err(|error| error.to_string())
     }
 
-    /// Follows a poll of the board's ring at `now` that returned `event`: fires exactly if the board fired.
+    /// Follows a poll of the board's ring at `now` that returned `event`: fires if and only if the board fired.
     pub(crate) fn after_poll(&mut self, now: Instant, event: Option<&RingEvent>) -> Result<(), String> {
         while let Some(edge) = self.ahead.pop_if(|edge| now.has_reached(edge.at)) {
             self.ring.edge(edge).map_err(|error| error.to_string())?;

@@ -1,6 +1,6 @@
-//! An emulated board as a process: its standard output carries records, its standard input answers.
+//! An emulated board as a process: it writes records to standard output and reads answers from standard input.
 //!
-//! The firmware opens both as files, by the debugger's file access. What it says as text goes to standard error.
+//! The firmware opens both as files through the debugger. Its text output goes to standard error.
 
 use std::io::{BufReader, Read, Write};
 use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
@@ -20,7 +20,7 @@ pub(crate) struct Emulator {
     input: ChildStdin,
     output: BufReader<ChildStdout>,
     text: Option<JoinHandle<String>>,
-    /// Channel that ends the watch; the watch tells if it had to end the board.
+    /// Channel that ends the watchdog, and its thread, which returns true if it had to end the board.
     watch: Option<(Sender<()>, JoinHandle<bool>)>,
 }
 
@@ -42,7 +42,7 @@ impl Emulator {
         };
         let text = thread::spawn(move || {
             let mut text = Vec::new();
-            // What was said before an error is still worth telling.
+            // Output before an error is still worth reporting.
             let _ = errors.read_to_end(&mut text);
             String::from_utf8_lossy(&text).into_owned()
         });
@@ -53,7 +53,7 @@ impl Emulator {
             let late =
                 ended.recv_timeout(LONGEST).is_err_and(|error| error == std::sync::mpsc::RecvTimeoutError::Timeout);
             if late {
-                // It may have ended at this very moment.
+                // The board may have ended at this very moment.
                 let _ = watched.lock().unwrap_or_else(PoisonError::into_inner).kill();
             }
             late
@@ -69,7 +69,7 @@ impl Emulator {
         self.input.write_all(&bytes).and_then(|()| self.input.flush()).map_err(|error| format!("to the board: {error}"))
     }
 
-    /// Answers a trigger.
+    /// Answers a trigger with the edges to come.
     pub(crate) fn answer(&mut self, ahead: &[Ahead]) -> Result<(), String> {
         let mut words = vec![ahead.len() as u32];
         words.extend(ahead.iter().flat_map(|ahead| ahead.to_words()));
@@ -110,7 +110,7 @@ impl Emulator {
             (Ok(()), Ok(status)) => format!("the board left with {status}"),
             (Ok(()), Err(error)) => error.to_string(),
         };
-        // QEMU complains of a timer that is not yet set; that is harmless.
+        // QEMU complains about a timer that is not yet set; that is harmless.
         let text: Vec<&str> = text.lines().filter(|line| !line.contains("Timer with period zero")).collect();
         Err(format!("{why}\n{}", text.join("\n")))
     }
@@ -124,7 +124,7 @@ impl Emulator {
 
 impl Drop for Emulator {
     fn drop(&mut self) {
-        // Ended already, but for errors.
+        // The board has already ended, except after errors.
         let mut child = self.child.lock().unwrap_or_else(PoisonError::into_inner);
         let _ = child.kill();
         let _ = child.wait();

@@ -1,14 +1,14 @@
-//! Hardware in the loop: what the board and the host agree on.
+//! Hardware in the loop: the protocol between board and host.
 //!
 //! The board runs a ring of eight HC-SR04 sensors as it would run on a robot; the host plays the echo lines. They
 //! exchange [`Record`]s over two pipes, in lock step. The board reports everything that goes into its ring and
-//! everything that comes out: each edge, each poll, each look at a pin, each event. It waits for an answer only when it
-//! has triggered a sensor: the time of an emulated board stands still while it waits. The answer is every edge to come
-//! on any line ([`Ahead`]), as far as is known by then; it replaces the answer before, since the sound of a later
-//! firing may be heard first.
+//! everything that comes out: each edge, each poll, each read of a pin, each event. It waits for an answer only when it
+//! has triggered a sensor: the time of an emulated board stands still meanwhile. The answer lists all edges to come on
+//! any line ([`Ahead`]) that are known by then; it replaces the previous answer, since the sound of a later firing may
+//! be heard first.
 //!
-//! The host, which is the binary of this crate, hands the same inputs to a ring of its own (the reference) and compares
-//! what comes out, word by word.
+//! The host, the binary of this crate, feeds the same inputs to a ring of its own (the reference) and compares the
+//! outputs word by word.
 #![no_std]
 
 use eeruf_core::{
@@ -21,8 +21,8 @@ use eeruf_hc_sr04::Health;
 /// Number of sensors: as many as in `scenes/alcove-hc-sr04.toml`.
 pub const SENSORS: usize = 8;
 
-/// The paper's Table I-d for the first eight of its twelve sensors, verified for as large a `t_delta` as it allows: the
-/// ring then knows how late firings may be.
+/// The paper's Table I-d for the first eight of its twelve sensors, verified for the largest `t_delta` that it allows,
+/// so that the ring knows how late firings may be.
 pub const SCHEDULE: VerifiedSchedule<SENSORS> = {
     let ms = Micros::from_millis;
     let lag = [ms(0), ms(25), ms(50), ms(75), ms(0), ms(25), ms(50), ms(75)];
@@ -38,7 +38,7 @@ pub const SCHEDULE: VerifiedSchedule<SENSORS> = {
 /// Settings of the ring: those of `scenes/alcove-hc-sr04.toml`, with a window for the longest pulse and its delay.
 pub const CONFIG: RingConfig = RingConfig::new().with_t_delta(Micros::new(500)).with_window(Micros::from_millis(40));
 
-/// The flow ring of the same sensors.
+/// Makes a flow ring of the same sensors.
 ///
 /// # Errors
 /// None with these numbers.
@@ -71,13 +71,13 @@ impl Orders {
     }
 }
 
-/// The most edges in an answer (a choice); the host refuses a run that needs more.
+/// Largest number of edges in an answer, an arbitrary choice; the host refuses a run that needs more.
 pub const MOST_AHEAD: usize = 48;
 
 /// A coming edge on an echo line.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Ahead {
-    /// The edge, and when.
+    /// The edge, with its time.
     pub edge: Edge,
     /// True if the line changes without an interrupt.
     pub lost: bool,
@@ -111,15 +111,15 @@ pub enum Topic {
     Edge,
     /// The ring is polled.
     Poll,
-    /// The driver looks at an echo line before it triggers.
+    /// The driver reads an echo line before it triggers.
     Level,
     /// A trigger pin has fallen: the sensor sends its sound. The board waits for the answer.
     Trigger,
-    /// The event that the poll returned, or that there was none.
+    /// The event that the poll returned, or none.
     Event,
     /// Time until which the board sleeps.
     Deadline,
-    /// The sensors at a period's end, and the number of edges that found the queue full.
+    /// The health of the sensors at a period's end, and the number of edges lost to a full queue.
     State,
 }
 
@@ -162,7 +162,7 @@ impl Record {
         Self::at(Topic::Poll, 0, 0, now)
     }
 
-    /// Makes the record of a look at an echo line.
+    /// Makes the record of a read of an echo line.
     pub const fn level(sensor: u8, high: bool) -> Self {
         Self::new(Topic::Level, sensor, high as u8, [0; 5])
     }
@@ -207,7 +207,7 @@ impl Record {
         }
     }
 
-    /// Makes the record of the sensors' state and the number of edges that found the queue full.
+    /// Makes the record of the sensors' health and the number of edges lost to a full queue.
     pub fn state(health: [Health; SENSORS], edges_lost: u8) -> Self {
         let code = health.iter().fold(0, |sum, &health| sum << 4 | health as u32);
         Self::new(Topic::State, 0, edges_lost, [code, 0, 0, 0, 0])
@@ -314,7 +314,7 @@ mod tests {
     }
 }
 
-/// Doctest of the project's README; it is here because a published crate cannot see that file.
+/// Doctest of the project's README, here because published crates cannot include that file.
 #[cfg(doctest)]
 #[doc = include_str!("../../../README.md")]
 struct Readme;

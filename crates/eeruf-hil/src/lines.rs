@@ -1,4 +1,4 @@
-//! The echo lines of eight HC-SR04 sensors in a simulated world, and what goes wrong with one of them.
+//! The echo lines of eight HC-SR04 sensors in a simulated world, and the fault of one of them.
 
 use core::fmt;
 
@@ -10,7 +10,7 @@ use eeruf_sim::{Fault, FaultKind, LockStep, World, line_edges};
 
 use crate::played::PlayedLines;
 
-/// The sensor that has the faults, from 0.
+/// The sensor with the fault, from 0.
 pub(crate) const FAULTY: u8 = 2;
 /// Time from the trigger's fall to the rise of the line, after the burst.
 const RISE_US: u64 = 450;
@@ -18,10 +18,10 @@ const RISE_US: u64 = 450;
 const TIME_OUT_US: u64 = HC_SR04.no_echo.hold_us() as u64;
 /// The firing from which on a line is stuck.
 const STUCK_FROM: u32 = 20;
-/// No interrupt comes later than this: some instructions at 64 ns each, and other interrupts before it.
+/// Greatest delay of an interrupt: some instructions at 64 ns each, and other interrupts before it.
 const LATEST_US: u64 = 200;
 
-/// The fault on the line of [`FAULTY`]: faults as scenes have them.
+/// The fault on the line of [`FAULTY`], one of those that scenes can have.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum LineFault {
     None,
@@ -92,11 +92,11 @@ pub(crate) struct Lines<'w> {
     faults: Vec<Fault>,
     /// Edges that replace those of the world.
     played: Option<PlayedLines>,
-    /// Lines by their pin.
+    /// The lines, indexed by pin.
     lines: [Line; SENSORS],
-    /// A reading of the board's clock, and the microseconds from the start to it.
+    /// A reading of the board's clock, and the microseconds from the start until then.
     clock: (Instant, u64),
-    /// The largest delay before the board noticed an edge.
+    /// The greatest delay until the board noticed an edge.
     pub(crate) latest: Micros,
 }
 
@@ -113,8 +113,8 @@ impl<'w> Lines<'w> {
         Self { played, ..self }
     }
 
-    /// Microseconds since the start, without the clock's wrap: `at` is less than half an hour from the instant of the
-    /// last call.
+    /// Microseconds since the start, with wraps of the clock counted; `at` is less than half an hour from the instant
+    /// of the last call.
     fn since_start(&mut self, at: Instant) -> u64 {
         let (known, us) = self.clock;
         let ahead = at.since(known).as_micros().cast_signed();
@@ -127,7 +127,7 @@ impl<'w> Lines<'w> {
         let at = self.since_start(at);
         let pin = self.played.as_ref().map_or(sensor, |played| played.pin_of(sensor));
         if self.played.is_some() && self.is_high(pin, at) {
-            // A module whose line is high does not hear its trigger.
+            // A module whose line is high ignores its trigger.
             return Ok(());
         }
         self.all_noticed(pin)?;
@@ -150,8 +150,7 @@ impl<'w> Lines<'w> {
         self.edges(pin).iter().rev().find(|&&(edge_at, ..)| edge_at <= at).is_some_and(|&(_, high, _)| high)
     }
 
-    /// The edges of a line after its last trigger, as far as is known: when, whether it rises, whether the interrupt is
-    /// lost.
+    /// The known edges of a line after its last trigger: time, true if the line rises, true if the interrupt is lost.
     fn edges(&self, sensor: u8) -> Vec<(u64, bool, bool)> {
         let Some(&line) = self.lines.get(usize::from(sensor)) else { return Vec::new() };
         let Some(triggered) = line.triggered_us else { return Vec::new() };
@@ -164,8 +163,7 @@ impl<'w> Lines<'w> {
         edges.map(|edge| (edge.at_us, edge.high, edge.lost)).collect()
     }
 
-    /// Edges to come on all lines, for a board whose clock reads `now`. Edges that it may just have noticed are among
-    /// them.
+    /// Edges to come on all lines, for a board whose clock reads `now`, including edges that it may just have noticed.
     pub(crate) fn ahead(&mut self, now: Instant) -> Result<Vec<Ahead>, String> {
         let now = self.since_start(now);
         let mut ahead = Vec::new();
@@ -185,7 +183,7 @@ impl<'w> Lines<'w> {
         Ok(ahead.collect())
     }
 
-    /// Takes an edge that the board has noticed. It must be the next one of its line, at its time or a little later.
+    /// Checks an edge that the board has noticed: it must be the next one of its line, at its time or a little later.
     pub(crate) fn notice(&mut self, edge: Edge) -> Result<(), String> {
         let noticed_at = self.since_start(edge.at);
         let expected = self.edges(edge.sensor);
@@ -231,7 +229,7 @@ mod tests {
         Instant::from_micros(us)
     }
 
-    // Every line rises when its sound is sent and falls when something is heard.
+    // Every line rises when its sensor sends sound and falls when it hears something.
     #[test]
     fn line_rises_with_sound_and_falls_with_echo() {
         let world = alcove();

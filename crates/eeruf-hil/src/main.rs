@@ -1,16 +1,16 @@
 //! `eeruf-hil SCENE --board NAME EMULATOR .. [--board ..]`: hardware in the loop, without a fault and with each of six.
 //!
-//! Prints two tables in Markdown: how the boards' rings agree with the host's, and what each fault did. Exits with 1 if
-//! anything is wrong.
+//! Prints two Markdown tables: the agreement of the boards' rings with the host's, and the effect of each fault. Exits
+//! with 1 if anything is wrong.
 //!
-//! `eeruf-hil SCENE --flow --board NAME EMULATOR .. [--board ..]`: the same of boards whose ring fires by flow; one
-//! table.
+//! `eeruf-hil SCENE --flow --board NAME EMULATOR .. [--board ..]`: tests boards whose rings fire by flow, and prints
+//! one table.
 //!
-//! `eeruf-hil SCENE --one FAULT PERIODS --board NAME EMULATOR ..`: one run at the pace of the clock on the wall, as it
-//! is needed to test what listens to the board's serial line. Prints what the ring read, as CSV.
+//! `eeruf-hil SCENE --one FAULT PERIODS --board NAME EMULATOR ..`: one run in real time, for tests of programs that
+//! listen to the board's serial line. Prints the readings as CSV.
 //!
-//! `eeruf-hil SCENE --lines LINES PERIODS --board NAME EMULATOR ..`: the same where the lines play edges instead of
-//! what the scene gives: for each sensor its pin and edges, in microseconds after its trigger, as `2 +450 -6280*`.
+//! `eeruf-hil SCENE --lines LINES PERIODS --board NAME EMULATOR ..`: a run like `--one` in which the lines play given
+//! edges instead of the scene's: for each sensor its pin and edges, in us after its trigger, as `2 +450 -6280*`.
 
 mod control;
 mod emulator;
@@ -29,7 +29,7 @@ use crate::lines::FAULTY;
 use crate::played::PlayedLines;
 use crate::run::{Fault, PERIODS, Pace, Run, run, run_flow, run_played};
 
-/// Least share of readings believed of any sensor of the flow ring in this scene.
+/// Least share of believed readings for any sensor of the flow ring in this scene.
 const LEAST_BELIEVED: f64 = 0.5;
 
 /// A board's name, and the command that emulates it.
@@ -162,13 +162,13 @@ fn flow_table(scene: &str, boards: &[Board<'_>]) -> Result<String, String> {
     ))
 }
 
-/// Makes a row for a flow ring. A microsecond may decide what is believed, and thus when the next sensor fires, and
-/// interrupt times vary by microseconds between runs: the table has no counts and no lateness, and standard error has
-/// the counts.
+/// Makes a row for a flow ring. A microsecond may decide what is believed, and so when the next sensor fires, and
+/// interrupts vary by microseconds between runs: so the table has neither counts nor lateness, and the counts go to
+/// standard error.
 fn flow_row(world: &World, board: &str, fault: Fault, emulator: &[String]) -> Result<String, String> {
     let run = run_flow(world, fault, PERIODS, emulator)?;
     let report = run.report_flow(fault)?;
-    // When a line is named depends on how often its sensor fires.
+    // The time until a line is named depends on how often its sensor fires.
     let named = report.split(" after ").next().unwrap_or_default();
     let named = if fault == Fault::Stall { "a late firing" } else { named };
     let but = matches!(fault, Fault::Line(_)).then_some(FAULTY);
@@ -181,7 +181,7 @@ fn flow_row(world: &World, board: &str, fault: Fault, emulator: &[String]) -> Re
         run.count(),
         100.0 * least,
     );
-    // No sensor is blind, whatever is wrong with another one.
+    // No sensor may be blind, whatever is wrong with another.
     if least < LEAST_BELIEVED {
         return Err(format!("of a sensor {:.1} % of the readings are believed; expected half", 100.0 * least));
     }

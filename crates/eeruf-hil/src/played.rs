@@ -1,11 +1,11 @@
-//! Edges played on lines after each trigger, in place of the world's: faults described by a test.
+//! Edges played on the lines after each trigger instead of the world's: faults that a test describes.
 
 use eeruf_hil::SENSORS;
 
-/// An edge: microseconds after the trigger, whether the line rises, whether the interrupt gets lost.
+/// An edge: microseconds after the trigger, true if the line rises, true if the interrupt is lost.
 type Played = (u64, bool, bool);
 
-/// The edges of every sensor, and the pin at which its line is.
+/// The edges of every sensor, and the pin of its line.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct PlayedLines {
     edges: [Vec<Played>; SENSORS],
@@ -13,7 +13,7 @@ pub(crate) struct PlayedLines {
 }
 
 impl PlayedLines {
-    /// Reads one entry for each sensor, parted by commas: the pin, counted from 0, and edges such as `+450`, which
+    /// Reads one entry for each sensor, separated by commas: the pin, counted from 0, and edges such as `+450`, which
     /// rises, and `-6280*`, which falls without an interrupt.
     ///
     /// # Errors

@@ -1,7 +1,7 @@
 //! The reference: a ring on the host that gets every input of the ring on the board, in the same order, and must emit
 //! the same events.
 //!
-//! Its trigger pins fire into the simulated world, and only when the board has said that it triggers, too.
+//! Its trigger pins fire into the simulated world, but only after the board has reported the same trigger.
 
 use core::cell::RefCell;
 use core::convert::Infallible;
@@ -61,7 +61,7 @@ impl<'w> Session<'w> {
         self.board.answer(&ahead)
     }
 
-    /// The driver takes pins that cannot fail, so a failure is stored here until the poll is over.
+    /// Stores an error until the poll is over, since the driver expects pins that cannot fail.
     fn store_error<T: Default>(&mut self, result: Result<T, String>) -> T {
         result.unwrap_or_else(|wrong| {
             self.wrong.get_or_insert(wrong);

@@ -30,7 +30,7 @@ pub(crate) enum Fault {
 const STALL_AFTER: u32 = PERIODS / 2;
 const STALL: Micros = Micros::from_millis(50);
 
-/// Largest change of a sound's echo time between runs.
+/// Largest change of an echo time between runs.
 const MOST_MOVED: Micros = Micros::new(25);
 
 impl Fault {
@@ -58,7 +58,7 @@ impl Fault {
         })
     }
 
-    /// The clock wraps, or the main loop stalls, in the middle of this many periods of 100 ms.
+    /// Orders for this many periods of 100 ms; the clock wraps or the main loop stalls in the middle.
     fn orders(self, periods: u32) -> Orders {
         let start = if self == Self::Wrap { 0_u32.wrapping_sub(periods / 2 * 100_000) } else { 0 };
         let stall = if self == Self::Stall { STALL } else { Micros::ZERO };
@@ -80,7 +80,7 @@ impl fmt::Display for Fault {
 /// The outcome of a run.
 pub(crate) struct Run {
     pub(crate) read: Read,
-    /// The largest delay before the board noticed an edge.
+    /// The greatest delay until the board noticed an edge.
     pub(crate) latest_edge: Micros,
     /// The largest lateness of a firing.
     pub(crate) max_late: Micros,
@@ -90,7 +90,7 @@ pub(crate) struct Run {
     named_after: Option<u32>,
 }
 
-/// Difference of the healthy sensors from a run without a fault.
+/// Difference of the healthy sensors' readings from a run without a fault.
 pub(crate) struct Change {
     /// Number of readings of another kind.
     pub(crate) kinds: usize,
@@ -101,14 +101,14 @@ pub(crate) struct Change {
 /// The speed of a board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Pace {
-    /// As fast as the emulation goes.
+    /// As fast as the emulation allows.
     Free,
     /// In real time, for programs that listen to the board's serial line.
     Wall,
 }
 
-/// A run of a board whose ring fires by the table of two phases. If a line has a fault, the readings of the others are
-/// compared with the control.
+/// Runs a board whose ring fires by the table of two phases. If a line has a fault, the readings of the other sensors
+/// are compared with the control.
 pub(crate) fn run(world: &World, fault: Fault, periods: u32, pace: Pace, emulator: &[String]) -> Result<Run, String> {
     let make = |now| Ring::new(&SCHEDULE, CONFIG, now).map_err(|error| error.to_string());
     run_ring(world, (fault, None), periods, pace, emulator, make, true)
@@ -120,8 +120,8 @@ pub(crate) fn run_played(world: &World, lines: PlayedLines, periods: u32, emulat
     run_ring(world, (Fault::None, Some(lines)), periods, Pace::Wall, emulator, make, false)
 }
 
-/// A run of a board whose ring fires by flow. It has no control: who fires when depends on what all sensors hear, so
-/// that a ring without the fault fires at other times.
+/// Runs a board whose ring fires by flow. There is no control: the firing times depend on what all sensors hear, so a
+/// ring without the fault fires at other times.
 pub(crate) fn run_flow(world: &World, fault: Fault, periods: u32, emulator: &[String]) -> Result<Run, String> {
     let make = |now| flow_ring(now).map_err(|error| error.to_string());
     run_ring(world, (fault, None), periods, Pace::Free, emulator, make, false)
@@ -142,7 +142,7 @@ fn run_ring<P: Plan, J: Judge, const H: usize>(
     let lines = Lines::new(world, line_fault, orders.start)?.with_played(played);
     let session = Session::new(Emulator::start(emulator, orders)?, lines, pace);
     let outcome = (|| {
-        // The first thing that a board says is when it set up its ring.
+        // The first record of a board says when it set up its ring.
         let now = session.borrow_mut().expect(Topic::Deadline, 0)?.instant();
         let mut reference = Reference::new(&session, make(now)?)?;
         let mut control = if has_control { Some(Control::new(now, FAULTY)?) } else { None };
@@ -228,13 +228,13 @@ impl Run {
         self.read.iter().map(Vec::len).sum()
     }
 
-    /// Returns the number of readings of a kind, of all sensors or of all but one.
+    /// Returns the number of readings of a kind, over all sensors or all but one.
     pub(crate) fn of(&self, kind: ReadingKind, but: Option<u8>) -> usize {
         let sensors = self.read.iter().enumerate().filter(|&(sensor, _)| Some(sensor) != but.map(usize::from));
         sensors.flat_map(|(_, read)| read).filter(|reading| reading.kind == kind).count()
     }
 
-    /// The least share of believed readings, tentative or confirmed, of any sensor but the faulty one.
+    /// The least share of believed readings, tentative or confirmed, among all sensors but one.
     pub(crate) fn least_believed(&self, but: Option<u8>) -> f64 {
         let sensors = self.read.iter().enumerate().filter(|&(sensor, _)| Some(sensor) != but.map(usize::from));
         let share = |read: &[Reading]| {
@@ -245,7 +245,7 @@ impl Run {
         sensors.map(|(_, read)| share(read)).fold(1.0, f64::min)
     }
 
-    /// Returns true if all other sensors read what they would have read without the fault.
+    /// Checks that all other sensors read what they would have read without the fault.
     fn others_are(&self, control: &Read) -> Result<(), String> {
         for (sensor, (read, without)) in self.read.iter().zip(control).enumerate() {
             if sensor != usize::from(FAULTY) && read != without {
@@ -259,8 +259,8 @@ impl Run {
         Ok(())
     }
 
-    /// Number of readings whose kind equals that of the simulator's own run of the same world, and the greatest
-    /// difference of their echo times, in microseconds.
+    /// Number of readings of the same kind as in the simulator's own run of the world, and the greatest difference
+    /// between their echo times, in microseconds.
     pub(crate) fn as_simulated(&self, simulated: &Readings) -> Result<(usize, f64), String> {
         let (mut same, mut most) = (0, 0.0_f64);
         for k in 0..simulated.len() {
@@ -279,14 +279,14 @@ impl Run {
         Ok((same, most))
     }
 
-    /// The reported name of the fault, which must be this one and no other.
+    /// Describes how the fault was reported, which must be this fault and no other.
     pub(crate) fn report(&self, fault: Fault) -> Result<String, String> {
         // The next firing is due up to 24 ms after the stall began.
         self.report_late(fault, Some(Micros::from_millis(26)))
     }
 
-    /// Reports like [`report`](Self::report), for a flow ring: its lateness says nothing of a stall, since an echo that
-    /// ends the quiet makes the next firing due at once, if not before.
+    /// Reports like [`report`](Self::report), for a flow ring: its lateness does not reveal a stall, since an echo that
+    /// ends the quiet makes the next firing due at once or earlier.
     pub(crate) fn report_flow(&self, fault: Fault) -> Result<String, String> {
         self.report_late(fault, None)
     }
@@ -310,10 +310,9 @@ impl Run {
         })
     }
 
-    /// The difference of other sensors from a run without a fault. Firings and interrupts come some microseconds
-    /// earlier or later when there is more or less to do, so echo times move by as much; no kind of reading may change
-    /// for it. A stall makes the ring compare some with nothing: those not yet emitted when it ended, and those of
-    /// three periods.
+    /// The difference of the other sensors' readings from a run without a fault. Firings and interrupts shift by some
+    /// microseconds with the load, so echo times move by as much, but no kind of reading may change. After a stall the
+    /// ring compares some readings with nothing: those not yet emitted when it ended, and those of three periods.
     pub(crate) fn change_from(&self, fault_free: &Self, fault: Fault) -> Result<Change, String> {
         let mut change = Change { kinds: 0, moved: Micros::ZERO };
         for (sensor, (mine, without)) in self.read.iter().zip(&fault_free.read).enumerate() {
@@ -344,7 +343,7 @@ impl Run {
 mod tests {
     use super::*;
 
-    // A scene cannot have the board's own: nothing is wrong with sound or lines.
+    // Faults of the board are not in scenes: sound and lines are then without fault.
     #[test]
     fn each_fault_is_of_a_line_or_of_the_board() {
         let well = Fault::None.orders(PERIODS);

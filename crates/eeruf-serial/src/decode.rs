@@ -16,7 +16,7 @@ const CRC: Crc<u16, Table<1>> = Crc::<u16, Table<1>>::new(&CRC_16_IBM_3740);
 /// Contents of a frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Message {
-    /// The board introduces itself, now and then.
+    /// A greeting that the board sends now and then.
     Hello {
         /// Number of the board's sensors, 1 to 64.
         sensors: u8,
@@ -31,14 +31,14 @@ pub enum Message {
         period: u32,
         /// The largest lateness of a firing in the period.
         max_late: Micros,
-        /// Number of edges that got lost on the board since it started, modulo 256.
+        /// Number of edges lost on the board since it started, modulo 256.
         edges_lost: u8,
-        /// Health of each sensor, as `eeruf_hc_sr04::Health` counts.
+        /// Health of each sensor, numbered as `eeruf_hc_sr04::Health`.
         health: Vec<u8>,
     },
 }
 
-/// Number of extra bytes in a firing of a hopping ring: how the ring weighed the reading.
+/// Number of extra bytes in a firing of a hopping ring, for the weights of the reading.
 const HOW: usize = 6;
 
 /// A message and its frame's number.
@@ -48,16 +48,16 @@ pub struct Received {
     pub sequence: u16,
     /// Contents of the frame.
     pub message: Message,
-    /// True for a firing of a ring that hopped, as boards of earlier versions send it: how the ring weighed the reading
-    /// is ignored.
+    /// True for a firing of a hopping ring, which boards of earlier versions send; the weights of the reading are
+    /// ignored.
     pub of_hopping: bool,
 }
 
-/// Reason why bytes between two zeros are no frame.
+/// Reason why the bytes between two zeros are not a valid frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum FrameError {
-    /// Damaged or cut: not COBS, too long or too short, or the check sum does not fit.
+    /// The frame is damaged or cut: not COBS, too long or too short, or its check sum is wrong.
     Damaged,
     /// The frame is whole, but its protocol version is unknown.
     Version(u8),
@@ -97,10 +97,10 @@ impl Default for Decoder {
 }
 
 impl Decoder {
-    /// Takes a byte. Returns the message of the frame that it ends, if any.
+    /// Processes a byte. Returns the message of the frame that it ends, if any.
     ///
     /// # Errors
-    /// [`FrameError`] for bytes between two zeros that are no frame; the next frame is read all the same.
+    /// [`FrameError`] if the bytes between two zeros are not a valid frame; the next frame is still read.
     pub fn push(&mut self, byte: u8) -> Option<Result<Received, FrameError>> {
         if byte != 0 {
             if let Some(place) = self.bytes.get_mut(self.length) {
@@ -147,7 +147,7 @@ fn hello(mut fields: Fields<'_>) -> Result<Message, FrameError> {
         return Err(FrameError::Content("number of sensors"));
     }
     let clock = core::str::from_utf8(fields.0).ok().filter(|name| name.len() <= LONGEST_CLOCK);
-    // It stands in the first line of logs.
+    // The name appears in the first line of logs.
     let clock = clock.filter(|name| name.bytes().all(|byte| (b' '..=b'~').contains(&byte)));
     Ok(Message::Hello { sensors, clock: clock.ok_or(FrameError::Content("clock"))?.into() })
 }

@@ -38,7 +38,7 @@ impl Encoder {
         Self { sequence: 0 }
     }
 
-    /// Encodes a greeting: the number of sensors, and the name of the board's clock: ASCII, of which 16 bytes are sent.
+    /// Encodes a greeting: the number of sensors, and the name of the board's clock (ASCII, cut to 16 bytes).
     pub fn hello(&mut self, sensors: u8, clock: &str) -> Frame {
         let mut content = self.begin(HELLO);
         content.push(&[sensors]);
@@ -64,7 +64,7 @@ impl Encoder {
     }
 
     /// Encodes the end of a period: its number, its greatest lateness, the number of edges lost on the board since it
-    /// started (modulo 256), and the health of each sensor, as `eeruf_hc_sr04::Health` counts.
+    /// started (modulo 256), and the health of each sensor, numbered as `eeruf_hc_sr04::Health`.
     pub fn period(
         &mut self,
         period: u32,
@@ -110,8 +110,8 @@ impl Content {
         }
     }
 
-    /// Adds the check sum, and writes zeros as COBS does: each is replaced by the distance to the next one. No content
-    /// is as long as 254 bytes, where COBS would need a second byte.
+    /// Adds the check sum and applies COBS: each zero is replaced by the distance to the next one. Contents are shorter
+    /// than 254 bytes, where COBS would need a second byte.
     fn finish(mut self) -> Frame {
         let content = self.bytes.get(..self.length).unwrap_or_default();
         self.push(&crc_16(content).to_le_bytes());
@@ -139,7 +139,7 @@ impl Frame {
     }
 }
 
-/// CRC-16/IBM-3740, also called CCITT-FALSE: polynomial 0x1021, begun at 0xFFFF.
+/// CRC-16/IBM-3740, also called CCITT-FALSE: polynomial 0x1021, initial value 0xFFFF.
 fn crc_16(bytes: &[u8]) -> u16 {
     bytes.iter().fold(0xFFFF, |crc, &byte| {
         (0..8).fold(crc ^ u16::from(byte) << 8, |crc, _| if crc & 0x8000 != 0 { crc << 1 ^ 0x1021 } else { crc << 1 })

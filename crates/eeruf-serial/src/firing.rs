@@ -7,7 +7,7 @@ pub struct FiringMessage {
     pub sensor: u8,
     /// The phase of the firing, from 0.
     pub phase: u8,
-    /// The outcome: accepted, or why not.
+    /// The outcome: accepted, or the reason why not.
     pub kind: ReadingKind,
     /// Time of the firing, by the board's clock, which wraps after 2^32 us.
     pub fired: Instant,
@@ -15,7 +15,7 @@ pub struct FiringMessage {
     pub period: u32,
     /// The raw time from firing to the first echo; `None` without echo.
     pub t_echo: Option<Micros>,
-    /// Delay of the firing after it was due; at most 65,535 us, which stands for all more.
+    /// Delay of the firing after it was due; 65,535 us stands for this or more.
     pub late: Micros,
     /// Time from the firing until the frame was made.
     pub age: Micros,
@@ -24,8 +24,8 @@ pub struct FiringMessage {
 }
 
 impl FiringMessage {
-    /// Makes the message of a reading whose sensor `fired` at this instant, `late` by this much, for a frame made
-    /// `now`.
+    /// Makes the message of a reading whose sensor fired at the instant `fired`, with a delay of `late`, for a frame
+    /// made at `now`.
     pub fn of(reading: &Reading, fired: Instant, late: Micros, now: Instant) -> Self {
         let Reading { sensor, phase, kind, period, t_echo, explained_by, .. } = *reading;
         let age = now.since(fired);

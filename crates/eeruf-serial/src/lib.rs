@@ -1,8 +1,8 @@
-//! Frames of a ring on a serial line: one for each firing, of a few bytes, which firmware writes without an allocator
-//! and a program on the other side reads. Byte by byte: `docs/reference/serial.md`.
+//! Frames of a ring on a serial line: a few bytes for each firing, which firmware writes without an allocator and a
+//! program on the other side reads. The format: `docs/reference/serial.md`.
 //!
 //! - [`Recorder`] follows the events of a ring and makes the frames: `no_std`, no allocator, no dependency but
-//!   `eeruf-core`. [`Encoder`] is the part of it that knows the bytes.
+//!   `eeruf-core`. It uses [`Encoder`], which writes the bytes.
 //! - `Decoder`, with the feature `decode`, reads them: whatever gets lost or flipped on the way costs the frames that
 //!   it hits and no other.
 //!
@@ -51,7 +51,7 @@ const OLDEST_VERSION: u8 = 1;
 const HELLO: u8 = 0;
 const FIRING: u8 = 1;
 const PERIOD: u8 = 2;
-/// A firing of a ring that hopped, which boards of earlier versions send.
+/// A firing of a hopping ring, which boards of earlier versions send.
 #[cfg(feature = "decode")]
 const OF_HOPPING: u8 = 3;
 
@@ -59,7 +59,7 @@ const OF_HOPPING: u8 = 3;
 const BY_HISTORY: u8 = 0xFE;
 const BY_NOTHING: u8 = 0xFF;
 
-/// An echo time that stands for no echo.
+/// Marker for no echo.
 const NO_ECHO: u32 = u32::MAX;
 
 /// Doctest of the crate's README.

@@ -1,4 +1,4 @@
-//! The line between board and host: messages arrive, and a damaged one is never taken for another.
+//! The line between board and host: messages arrive, and a damaged message is never taken for another.
 
 use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, judge::Explanation, tables::PAPER_12};
 use eeruf_serial::{Decoder, Encoder, FiringMessage, Frame, FrameError, LONGEST_FRAME, Message, Received, Recorder};
@@ -140,7 +140,7 @@ fn cuts_and_flips_cost_only_the_frames_that_they_hit() {
         for (frame, sent) in frames.iter().zip(&sent) {
             let hurt = numbers.usize(..4) == 0;
             hit += usize::from(hurt);
-            // A frame that lost its end takes the next one along.
+            // A frame that lost its end spoils the next one too.
             if !hurt && line.last().is_none_or(|&byte| byte == 0) {
                 spared.push(sent.clone());
             }
@@ -276,7 +276,7 @@ fn a_recorder_says_everything_that_a_ring_reads() {
     assert_eq!(heard, expected);
 }
 
-// Boards in the field: firings of version 1, and of rings that hopped, whose weighing is ignored.
+// Boards in the field send firings of version 1, and of hopping rings, whose weights are ignored.
 #[test]
 fn frames_of_earlier_versions_are_still_read() {
     let bytes = |hex: &str| hex.split(' ').map(|byte| u8::from_str_radix(byte, 16).unwrap()).collect::<Vec<_>>();

@@ -1,4 +1,4 @@
-//! The times of an HC-SR04 in C and MicroPython are those of the Rust driver.
+//! Times of an HC-SR04 in C and MicroPython, which must equal those of the Rust driver.
 
 use eeruf_hc_sr04::{Settings, modules::HC_SR04};
 

@@ -19,10 +19,10 @@ fn each(mut check: impl FnMut(&str, &Fault, &Outcome)) {
     }
 }
 
-/// Readings after which a state must be right.
+/// Number of readings after which the state must be right.
 fn until_right(fault: &Fault) -> usize {
     match fault.says {
-        // For 250 ms, three firings, it may be a clone that has heard nothing.
+        // For 250 ms, three firings, the module may be a clone that has heard nothing.
         Says::Held => 3,
         // Each pulse is one silence, however many firings it outlasts.
         Says::Clear => fault.two_pulses(Faults::read(FAULTS).period_us).max(2),
@@ -34,7 +34,7 @@ fn right(fault: &Fault, outcome: &Outcome) -> usize {
     outcome.faulty[until_right(fault)..].iter().filter(|said| said.is(fault.says)).count()
 }
 
-/// Number of readings that call the space free without evidence, of both sensors if wires are exchanged.
+/// Number of readings that report free space without evidence, of both sensors if wires are exchanged.
 fn lies(fault: &Fault, outcome: &Outcome) -> usize {
     let witnessed = if fault.says == Says::Clear { outcome.faulty.len() } else { 0 };
     outcome.faulty.iter().skip(witnessed).chain(&outcome.partner).filter(|said| said.is_clear()).count()
@@ -57,7 +57,7 @@ fn state_is_right_within_two_answered_firings() {
     });
 }
 
-// A clone that holds its line for longer is as healthy as a module that does for 38 ms.
+// A clone that holds its line longer is as healthy as a module that holds it for 38 ms.
 #[test]
 fn healthy_module_is_well_and_clear_before_nothing() {
     let mut healthy = 0;
@@ -72,7 +72,7 @@ fn healthy_module_is_well_and_clear_before_nothing() {
     assert_eq!(healthy, 5 * LANGUAGES.len());
 }
 
-// An obstacle, and then its line sticks high: what a driver says is never free space, whenever that begins.
+// A sensor sees an obstacle, then its line sticks high at any time: the driver never reports free space.
 #[test]
 fn line_that_sticks_high_before_an_obstacle_is_never_clear() {
     let (faults, r) = (Faults::read(FAULTS), Random::new(1));
@@ -91,7 +91,7 @@ fn line_that_sticks_high_before_an_obstacle_is_never_clear() {
 fn file_has_each_fault_that_the_ring_must_name() {
     let faults = Faults::read(FAULTS).faults;
     let names: BTreeSet<&str> = faults.iter().map(|fault| &*fault.name).collect();
-    // Besides holds of 38 ms, which is a healthy module's.
+    // In addition to holds of 38 ms, by a healthy module.
     let expected = [
         "cut wire",
         "exchanged, 1 ms apart",
@@ -134,7 +134,7 @@ fn with_outcomes(document: &str) -> String {
     lines.join("\n") + "\n"
 }
 
-// EERUF_WRITE=1 writes it.
+// EERUF_WRITE=1 rewrites the document.
 #[test]
 fn outcomes_are_what_rust_and_c_say() {
     let stands = std::fs::read_to_string(OUTCOMES).unwrap();

@@ -1,4 +1,4 @@
-//! C and Rust get the same configurations, echoes, faults, lateness and clock jumps, and must say the same.
+//! C and Rust get the same configurations, echoes, faults, lateness and clock jumps, and must give the same results.
 //!
 //! Each test compares 200,000 events, or as many as `EERUF_C_EVENTS` says.
 

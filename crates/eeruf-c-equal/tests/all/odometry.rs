@@ -1,5 +1,5 @@
-//! A ring in C that is told of a change which crosstalk makes too: with odometry the proof of a punctual table says
-//! nothing, and the ring asks.
+//! A ring in C whose odometry expects a change that crosstalk shows too: the proof for a punctual table does not apply
+//! then, and the ring checks each reading.
 
 use eeruf_c_equal::{C, Do};
 use eeruf_core::{Micros, Phase, ReadingKind, Requirements, tables::TABLE_I_D};
@@ -13,8 +13,8 @@ fn fires(sensor: usize, period: u32) -> u32 {
     period * PERIOD + t_fire
 }
 
-/// The readings of a sensor that hears another along one fixed path and is told that path's change: the accepted and
-/// the ambiguous.
+/// Numbers of accepted and of ambiguous readings of a sensor that hears another along one fixed path, while odometry
+/// expects that path's change.
 fn heard_of(emitter: usize, receiver: u8) -> [usize; 2] {
     let mut c = C::new();
     let requirements = Requirements { window: Micros::new(60_000), ..Requirements::new(Micros::new(999)) };

@@ -1,4 +1,4 @@
-//! The parts that can be used alone: distances, edges.
+//! Parts that can be used alone: distances, edges.
 
 use eeruf_c_equal::{Edges, Random, distance_mm, sound_mm_s};
 use eeruf_core::{Edge, EdgeQueue, Instant, Micros, SpeedOfSound};

@@ -36,7 +36,7 @@ fn explain(event: &mut RingEvent, c: &mut C) {
 /// Runs one ring whose clock is late, jumps and wraps. Returns the number of frames.
 fn run(seed: u64) -> u64 {
     let (r, mut c) = (Random::new(seed), C::new());
-    // A table that nobody verified, on both sides.
+    // An unverified table, on both sides.
     let t_fire = |phase, sensor| PAPER_12.t_fire(phase, sensor).expect("one of twelve");
     let rows = [Phase::A, Phase::B].map(|phase| std::array::from_fn::<_, 12, _>(|sensor| t_fire(phase, sensor)));
     let slices = [&rows[0][..], &rows[1][..]];
@@ -47,7 +47,7 @@ fn run(seed: u64) -> u64 {
     let config = RingConfig::new().with_t_delta(Micros::new(t_delta)).with_window(Micros::new(window));
     let start_at = Instant::from_micros(start);
     let mut ring = Ring::<ScheduledFiring<'_, 12, 2>, _, 12>::unverified(&schedule, config, start_at).unwrap();
-    // Of the name 16 letters are sent.
+    // Only 16 letters of the name are sent.
     let mut recorder = Recorder::<12>::new("board of sixteen letters");
     let mut world = World::new(r, SENSORS, window);
     world.now = start;

@@ -1,20 +1,20 @@
-//! The board's clock in the host's time.
+//! Conversion of the board's clock to the host's time.
 //!
-//! A frame says when its sensor fired and how long ago that was when it was made. The time on the line varies; the
+//! A frame says when its sensor fired, and how long before the frame was made. The delay of the line varies; the
 //! shortest of the last ten seconds counts.
 
 use eeruf_core::{Instant, Micros};
 
-/// Least time for which an offset counts, in microseconds of the board.
+/// Least time for which an offset is kept, in microseconds of the board's clock.
 const KEPT_US: i64 = 5_000_000;
-/// A clock that jumps by this much means that the board has restarted.
+/// Jump of the clock that means that the board has restarted.
 const RESTART_NS: i64 = 2_000_000_000;
 
 #[derive(Debug, Default)]
 pub(crate) struct BoardClock {
     /// The last instant, raw and with its wraps counted.
     last: Option<(Instant, i64)>,
-    /// The least difference between arrival and making, in this stretch and the one before, and when this one began.
+    /// The least differences between the arrival and the making of a frame, in this stretch and the one before.
     offsets_ns: Option<[i64; 2]>,
     began_us: i64,
 }
@@ -56,7 +56,7 @@ mod tests {
 
     const START_NS: i64 = 1_700_000_000_000_000_000;
 
-    /// Frames of a board whose clock runs `drift` parts in a million too fast, over a line that takes 1 to 9 ms.
+    /// The worst error if the board's clock runs `drift` ppm too fast, over a line that takes 1 to 9 ms.
     fn worst_error_us(start: u32, drift: i64) -> i64 {
         let mut clock = BoardClock::default();
         let mut worst = 0;
@@ -74,12 +74,12 @@ mod tests {
         worst
     }
 
-    // Instants are right to the shortest way through a wrap and with drift.
+    // Instants are right up to the shortest delay, through a wrap and with drift.
     #[test]
     fn instants_are_right_through_wrap_and_drift() {
         assert!(worst_error_us(0, 0) <= 1_500);
         assert!(worst_error_us(u32::MAX - 20_000_000, 0) <= 1_500);
-        // 100 ppm, of which ten seconds make a millisecond.
+        // 100 ppm make a millisecond in ten seconds.
         assert!(worst_error_us(0, 100) <= 2_500);
         assert!(worst_error_us(0, -100) <= 2_500);
     }

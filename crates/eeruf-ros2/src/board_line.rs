@@ -1,4 +1,4 @@
-//! The serial line to a board, in a thread of its own: opened, read, and opened again when the board was unplugged.
+//! The serial line to a board: a thread opens and reads it, and reopens it after the board was unplugged.
 
 use std::io::ErrorKind;
 use std::sync::mpsc::Sender;
@@ -12,15 +12,15 @@ use serial2::SerialPort;
 pub(crate) enum FromLine {
     /// The port is open.
     Opened,
-    /// The line cannot be opened, or has gone; it is tried again each second.
+    /// The line cannot be opened or has disappeared; the thread retries each second.
     Lost(String),
-    /// A frame or a damaged one, and when its last byte was read, in nanoseconds since 1970.
+    /// A frame, intact or damaged, and the time when its last byte was read, in nanoseconds since 1970.
     Frame(Result<Received, FrameError>, i64),
 }
 
-/// Interval at which a port that cannot be opened is tried.
+/// Interval between attempts to open the port.
 const AGAIN: Duration = Duration::from_secs(1);
-/// Longest time that a read waits.
+/// Longest time for which a read waits.
 const PATIENCE: Duration = Duration::from_millis(200);
 
 /// Listens until the receiver is gone.
@@ -57,7 +57,7 @@ fn open(port: &str, baud: u32) -> std::io::Result<SerialPort> {
 fn read(line: &SerialPort, to: &Sender<FromLine>) -> std::io::Result<()> {
     let mut decoder = Decoder::default();
     let mut bytes = [0; 1024];
-    // What comes first is most often the rest of a frame.
+    // The first bytes are usually the rest of a frame.
     let mut begun = false;
     loop {
         let count = match line.read(&mut bytes) {
@@ -83,7 +83,7 @@ fn read(line: &SerialPort, to: &Sender<FromLine>) -> std::io::Result<()> {
     }
 }
 
-/// The host's clock, since 1970.
+/// The host's clock, in nanoseconds since 1970.
 pub(crate) fn nanoseconds() -> i64 {
     let since = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     i64::try_from(since.as_nanos()).unwrap_or(i64::MAX)

@@ -1,4 +1,4 @@
-//! The command line: the parameters, and what overrides them.
+//! The command line: the parameters, and the options that override them.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -47,7 +47,7 @@ struct Cli {
     no_ros: bool,
 }
 
-/// The node's task.
+/// The task that the command line sets.
 pub(crate) enum Task {
     Print(String),
     Run(Box<Setup>),

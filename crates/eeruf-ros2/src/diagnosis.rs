@@ -1,5 +1,5 @@
-//! Faults, as `diagnostic_msgs/DiagnosticArray` reports them once a second: of each sensor, of the line, of the timing.
-//! Times are seconds of any one clock.
+//! Faults of each sensor, of the line and of the timing, which `diagnostic_msgs/DiagnosticArray` reports once a second.
+//! Times are in seconds of any one clock.
 
 use eeruf_core::{
     Instant, MAX_SENSORS, Micros, PeriodStats, Phase, Reading, ReadingKind, RingEvent, Tally,
@@ -11,7 +11,7 @@ use crate::parameters::{Parameters, Source};
 use crate::range::Scale;
 use crate::view::View;
 
-/// Severity, as `DiagnosticStatus` counts.
+/// Severity, numbered as in `DiagnosticStatus`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 #[repr(u8)]
 pub(crate) enum Level {
@@ -30,7 +30,7 @@ pub(crate) struct Status {
     pub(crate) values: Vec<(&'static str, String)>,
 }
 
-/// A board's names for faults of a sensor's line, as `eeruf_hc_sr04::Health` counts.
+/// Descriptions of the health of a sensor's line, numbered as `eeruf_hc_sr04::Health`.
 const HEALTH: [&str; 6] = [
     "well",
     "missing: nothing comes from its line",
@@ -40,7 +40,7 @@ const HEALTH: [&str; 6] = [
     "pin error",
 ];
 
-/// Missing, stuck line and pin error: no reading of the sensor counts.
+/// Missing sensor, stuck line and pin error: the sensor's readings do not count.
 const BROKEN: [u8; 3] = [1, 2, 5];
 
 struct Sensor {
@@ -65,7 +65,7 @@ struct Interval {
 pub(crate) struct Diagnosis {
     sensors: Vec<Sensor>,
     watch: SensorWatch<MAX_SENSORS>,
-    /// The connection over which the ring is listened to, if it is a board or pins.
+    /// The kind of connection to the ring, if it is a board or pins.
     line: Option<&'static str>,
     late_us: u32,
     blind_after: u32,
@@ -75,7 +75,7 @@ pub(crate) struct Diagnosis {
     pub(crate) line_lost: Option<String>,
     /// Reason why intact frames cannot be used.
     pub(crate) foreign: Option<String>,
-    /// The number of sensors that the board says it has.
+    /// The number of sensors that the board reports.
     pub(crate) board_sensors: Option<u8>,
     /// The board's last period, and its count of lost edges then, which wraps.
     counted: Option<(u32, u8)>,
@@ -142,7 +142,7 @@ impl Diagnosis {
     pub(crate) fn period(&mut self, period: u32, max_late: Micros, edges_lost: u8, health: &[u8]) {
         self.interval.max_late = self.interval.max_late.max(max_late);
         let more = match self.counted.replace((period, edges_lost)) {
-            // Losses before anyone listened are no news.
+            // Losses from before this program listened are not news.
             None => 0,
             Some((before, counted)) if before < period => edges_lost.wrapping_sub(counted),
             // The board has started again.
@@ -161,7 +161,7 @@ impl Diagnosis {
         self.total_damaged += 1;
     }
 
-    /// Counts frames missing between two that arrived.
+    /// Counts frames that are missing between two that arrived.
     pub(crate) fn lost(&mut self, frames: u16) {
         self.interval.lost = self.interval.lost.saturating_add(frames.into());
         self.total_lost += u64::from(frames);
@@ -172,8 +172,8 @@ impl Diagnosis {
         self.interval.unsent += 1;
     }
 
-    /// The view of each sensor, and its age. One that no longer fires, or whose line the board calls broken, counts as
-    /// unanswered.
+    /// The view of each sensor, and its age. A sensor that no longer fires, or whose line the board reports as broken,
+    /// counts as unanswered.
     pub(crate) fn views<'a>(&'a self, now_s: f64, scale: &'a Scale) -> impl Iterator<Item = (View, Micros)> + 'a {
         (0..).zip(&self.sensors).map(move |(number, sensor)| {
             let state = self.watch.state(number, instant(now_s));
@@ -186,7 +186,7 @@ impl Diagnosis {
     /// Reports the state of everything, and begins the next interval.
     pub(crate) fn report(&mut self, now_s: f64) -> Vec<Status> {
         let interval = std::mem::take(&mut self.interval);
-        // Ages stay within what the watch's clock of 32 bits can tell.
+        // Keeps ages within the range of the watch's 32-bit clock.
         let (zero, tally) = (Micros::ZERO, Tally::default());
         let second = PeriodStats { period: 0, phase: Phase::A, tally, max_late: zero, sum_late: zero };
         self.watch.observe(&RingEvent::PeriodEnded(second), instant(now_s));
@@ -347,7 +347,7 @@ mod tests {
         assert_eq!(said(&mut diagnosis, 1.0), [well(), well(), sees(), sees()]);
     }
 
-    // Each fault is named once it is there and no longer when it is gone.
+    // Each fault is named while it lasts, and no longer.
     #[test]
     fn fault_is_named_while_it_lasts() {
         type Fault = fn(&mut Diagnosis);
@@ -398,7 +398,7 @@ mod tests {
         let lost = [(2.5, ReadingKind::Ambiguous)];
         assert_eq!(state(&lost, 3.0), said("unknown: ambiguous, explained by sensor 2", "0.5"));
         assert_eq!(state(&[(3.5, ReadingKind::Clear)], 4.0), said("clear", "0.5"));
-        // For a clock of 32 bits an hour and a half is less than twenty minutes.
+        // By a 32-bit clock an hour and a half looks like less than twenty minutes.
         for minute in 1..90 {
             state(&[], 4.0 + 60.0 * f64::from(minute));
         }
@@ -435,7 +435,7 @@ mod tests {
         assert_eq!(views(&diagnosis, 1.6)[0], View::Unanswered);
     }
 
-    // A sensor is blind when echoes are not accepted and silent when it does not fire.
+    // A sensor is blind if its echoes are not accepted, and silent if it does not fire.
     #[test]
     fn blind_and_silent_sensors_are_reported() {
         let mut diagnosis = diagnosis();

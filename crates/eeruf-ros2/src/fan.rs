@@ -1,11 +1,11 @@
-//! The ring's answer along one direction, where cones of several sensors may overlap.
+//! The view of the ring along one direction, where the cones of several sensors may overlap.
 
 use crate::placing::Place;
 use crate::range::{Distance, Scale};
 use crate::view::View;
 
-/// The view along a heading, and the distance from the robot's centre. The nearest obstacle counts, else an unknown
-/// view; a direction is free if every sensor whose cone holds the ray at the maximum range calls it clear.
+/// The view along a heading, with the distance from the robot's centre. The nearest obstacle counts, or else an unknown
+/// view; a direction is free if every sensor whose cone contains the ray at the maximum range is clear.
 pub(crate) fn along(
     heading_rad: f64,
     places: &[Place],

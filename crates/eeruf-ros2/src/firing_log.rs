@@ -1,4 +1,4 @@
-//! The log that `eeruf diagnose` reads: a row for each firing, in the order in which the ring gave its readings.
+//! The log that `eeruf diagnose` reads: a row for each firing, in the order of the ring's readings.
 
 use std::fs::File;
 use std::io::{self, BufWriter, Write};

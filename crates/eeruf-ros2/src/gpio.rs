@@ -1,5 +1,5 @@
-//! A ring of HC-SR04 modules on this machine's own pins, as on a Raspberry Pi. It sends the node the same messages as a
-//! board.
+//! A ring of HC-SR04 modules on this machine's own pins, as on a Raspberry Pi. It sends the node the messages that a
+//! board would send.
 
 #[cfg(target_os = "linux")]
 mod chip;
@@ -25,7 +25,7 @@ use embedded_hal::digital::{Error, ErrorKind, ErrorType, InputPin, OutputPin};
 
 use crate::board_line::{FromLine, nanoseconds};
 
-/// Search budget, in nodes, for the shortest period at the start: a second or two.
+/// Search budget in nodes, a second or two, for the shortest period at the start.
 const BUDGET: u64 = 2_000_000;
 
 /// The pins of all sensors, counted from 0, and the clock that stamps their edges.
@@ -35,7 +35,7 @@ pub(crate) trait Lines {
     fn set_trigger(&self, sensor: u8, high: bool) -> Result<(), String>;
     fn is_high(&self, sensor: u8) -> Result<bool, String>;
     fn delay_us(&self, us: u32);
-    /// The next edge of an echo line. Waits for it until this instant, and not at all if that has passed.
+    /// Returns the next edge of an echo line; waits for it until this instant, or not at all if that has passed.
     fn next_edge(&self, until_us: u64) -> Result<Option<Edge>, String>;
     /// The number of edges that were lost so far, modulo 256.
     fn lost(&self) -> u8;
@@ -69,7 +69,7 @@ impl GpioRing {
         let module = spec.robot_ring().modules.first().copied();
         let problem: PeriodProblem<'_> = spec.problem();
         let way = match method {
-            // Each robot throws dice of its own.
+            // Each robot draws random gaps of its own.
             "flow" => Way::Flow(Box::new(spec.flow(RandomState::new().hash_one(0) as u32 | 1)?)),
             "eeruf" => {
                 let search = Effort { budget: BUDGET, ..Effort::default() };
@@ -144,7 +144,7 @@ impl GpioRing {
                 }
             }
             let left = ring.next_deadline().since(instant(now_us));
-            // A deadline that has passed is half a turn of the clock ahead.
+            // A deadline that has passed seems to be more than half a turn of the clock ahead.
             let left_us = if left.as_micros() > i32::MAX as u32 { 0 } else { u64::from(left.as_micros()) };
             if let Some(edge) = lines.next_edge(now_us + left_us)? {
                 _ = ring.edge(edge);
@@ -176,7 +176,7 @@ fn instant(us: u64) -> Instant {
     Instant::from_micros(us as u32)
 }
 
-/// Facts learned about the ring so far.
+/// The state of the ring as far as it is known.
 struct Known {
     sequence: u16,
     fired: [(Instant, Micros); MAX_SENSORS],
@@ -215,7 +215,7 @@ impl Known {
     }
 }
 
-/// Trigger and echo line of a sensor; `None` if the ring does not have it.
+/// Trigger or echo line of a sensor; `None` for a sensor that the ring does not have.
 struct Pin<L> {
     lines: Rc<L>,
     sensor: Option<u8>,
@@ -227,7 +227,7 @@ impl<L> Clone for Pin<L> {
     }
 }
 
-/// An error of the kernel at a pin; the driver turns it into the sensor's health.
+/// A kernel error at a pin, which the driver turns into the sensor's health.
 #[derive(Debug)]
 pub(crate) struct PinError;
 
@@ -278,8 +278,8 @@ mod tests {
 
     use eeruf_core::ReadingKind;
 
-    /// Modules before walls that stand still, and a clock that advances while the ring waits. Module 2 has a cut wire,
-    /// nothing is in range of module 3, and the line of module 4 is stuck. The object before module 1 may jump.
+    /// Modules that face fixed walls, and a clock that advances while the ring waits. Module 2 has a cut wire, nothing
+    /// is in range of module 3, and the line of module 4 is stuck. The object in front of module 1 may jump.
     struct Modules {
         jumps: bool,
         now_us: Cell<u64>,
@@ -328,7 +328,7 @@ mod tests {
             match first.filter(|(at, ..)| *at <= until_us.max(self.now_us.get())) {
                 Some((at, sensor, high)) => {
                     self.edges.borrow_mut().pop_first();
-                    // It is read later than it came; its stamp is the kernel's.
+                    // The edge is read later than it came, but has the kernel's time stamp.
                     self.now_us.set(self.now_us.get().max(at + 30));
                     Ok(Some(Edge { sensor, high, at: instant(at) }))
                 }
@@ -349,7 +349,7 @@ mod tests {
 
     type OfSensor = Vec<(ReadingKind, Option<Micros>)>;
 
-    /// The readings of 40 periods, by sensor, and the health at their end. The ring gets the speeds once a period.
+    /// The readings of 40 periods by sensor, and the health at the end. The ring gets the speeds once a period.
     fn read(
         start_us: u64,
         (ring, method): (&str, &str),
@@ -416,12 +416,12 @@ mod tests {
             readings[1].iter().map(is_accepted).collect::<Vec<bool>>()
         };
         let count = |of: &[bool]| of.iter().filter(|&&is| is).count();
-        // Alone and moving, as the file says, every echo counts; of a robot that stands one that jumps does not.
+        // As the file says, every echo counts while the robot moves alone; on a stationary one a jump does not.
         let untold = accepted(|_| None);
         assert_eq!(count(&untold), untold.len());
         let standing = accepted(|_| Some([0, 0]));
         assert!(count(&standing) < standing.len() / 2, "{standing:?}");
-        // After half a second without a word the file's speed holds.
+        // After half a second without a report the file's speed holds.
         let silent = accepted(|period| (period < 15).then_some([0, 0]));
         assert!(count(&silent[..15]) < 8 && count(&silent[30..]) == silent[30..].len(), "{silent:?}");
         let turning = accepted(|_| Some([0, 500]));

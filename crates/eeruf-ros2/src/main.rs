@@ -1,7 +1,7 @@
 //! `eeruf-ros2`: a ROS 2 node for rings of ultrasonic sensors that needs no ROS installed.
 //!
-//! It listens to a board over a serial line, fires modules on its own pins, or simulates. It publishes readings as
-//! `sensor_msgs/Range`, the state of all sensors as `sensor_msgs/PointCloud2` and `LaserScan`, and faults as
+//! It listens to a board over a serial line, fires modules on its own pins, or runs a simulation. It publishes readings
+//! as `sensor_msgs/Range`, the state of all sensors as `sensor_msgs/PointCloud2` and `LaserScan`, and faults as
 //! `diagnostic_msgs/DiagnosticArray`, sends `MAVLink`, and writes the log that `eeruf diagnose` reads. See
 //! `docs/how-to/ros2.md`.
 

@@ -1,6 +1,6 @@
-//! `MAVLink` 2: `OBSTACLE_DISTANCE` of the whole ring, `DISTANCE_SENSOR` for sensors that a named rotation stands for,
-//! `HEARTBEAT`, `SYS_STATUS` and `STATUSTEXT` by which others know of us and of sensors that fail. What autopilots make
-//! of them: `docs/how-to/autopilots.md`.
+//! `MAVLink` 2: `OBSTACLE_DISTANCE` of the whole ring, `DISTANCE_SENSOR` for sensors with a named rotation, and
+//! `HEARTBEAT`, `SYS_STATUS` and `STATUSTEXT` to announce the node and failing sensors. How autopilots use these
+//! messages: `docs/how-to/autopilots.md`.
 //!
 //! Messages and numbers: <https://mavlink.io/en/messages/common.html>; frames:
 //! <https://mavlink.io/en/guide/serialization.html>.
@@ -19,7 +19,7 @@ use crate::view::View;
 
 const CRC: Crc<u16> = Crc::<u16>::new(&CRC_16_MCRF4XX);
 
-/// A message's number, and the byte that stands for its field layout.
+/// A message's number, and the CRC byte that depends on its fields.
 type Kind = (u32, u8);
 const HEARTBEAT: Kind = (0, 50);
 const SYS_STATUS: Kind = (1, 124);
@@ -46,18 +46,18 @@ const QUALITY_PERFECT: u8 = 100;
 const SECTORS: usize = 72;
 const SECTOR_DEG: f32 = 5.0;
 /// The middle of the first sector, clockwise from ahead. ArduPilot divides the circle into eight faces of 45 degrees
-/// and keeps the last run of sectors in each: the array begins where a face does, so that no face has two runs.
+/// and keeps the last run of sectors in each: the array starts with a face, so that no face has two runs.
 const FIRST_SECTOR_DEG: f32 = -20.0;
 /// Least half-width that a sensor covers: PX4 reads every second sector.
 const LEAST_HALF_VIEW_DEG: f32 = SECTOR_DEG;
-/// Value of a sector about which nothing is known.
+/// Value of a sector that is unknown.
 const UNKNOWN: u16 = u16::MAX;
 
 /// The `base_mode` of an autopilot's `HEARTBEAT` in a datagram, of `MAVLink` 1 or 2.
 fn base_mode(datagram: &[u8], system: u8) -> Option<u8> {
     let frame = |begin: usize| {
         let frame = &datagram[begin..];
-        // Where the sender's system and the payload stand, and the message's number after the component.
+        // The places of the sender's system and of the payload; the message's number follows the component.
         let (of_system, payload) = match frame.first()? {
             0xFD => (5, 10),
             0xFE => (3, 6),
@@ -109,7 +109,7 @@ pub(crate) struct Mavlink {
     field_of_view_rad: f32,
     unanswered_as: UnansweredAs,
     system: u8,
-    /// State in the autopilot's heartbeats; false before the first.
+    /// True if the autopilot's last heartbeat says that it is armed; false before the first.
     armed: bool,
     /// Sensors that did not answer when the ring was last sent.
     failed: Vec<bool>,
@@ -117,7 +117,7 @@ pub(crate) struct Mavlink {
     reported: Vec<bool>,
     /// Poses in clockwise order, all at the vehicle's centre.
     places: Vec<Place>,
-    /// The named rotation of each sensor that has one to itself.
+    /// The named rotation of each sensor that does not share it.
     rotations: Vec<Option<u8>>,
 }
 
@@ -186,13 +186,13 @@ impl Mavlink {
         let rest = [MAV_TYPE_ONBOARD_CONTROLLER, MAV_AUTOPILOT_INVALID, 0, state, MAVLINK_VERSION];
         self.send(HEARTBEAT, &[&custom_mode[..], &rest].concat())?;
         let proximity = MAV_SYS_STATUS_SENSOR_PROXIMITY;
-        // Present, enabled, in health; of load, battery and errors nothing is known.
+        // Present, enabled, healthy; load, battery and errors are unknown.
         let sensors = [proximity, proximity, if is_well { proximity } else { 0 }].map(u32::to_le_bytes).concat();
         let battery = [[0xFF; 2], [0xFF; 2]].concat();
         self.send(SYS_STATUS, &[&sensors[..], &[0; 2], &battery, &[0; 12], &[0xFF]].concat())
     }
 
-    /// Sends a sensor's distance, if it has a named rotation to itself.
+    /// Sends a sensor's distance, if it has a named rotation of its own.
     pub(crate) fn distance(&mut self, sensor: u8, distance: Distance) -> std::io::Result<()> {
         let Some(&Some(rotation)) = self.rotations.get(usize::from(sensor)) else { return Ok(()) };
         if self.holds_back() {
@@ -204,9 +204,8 @@ impl Mavlink {
         self.send(DISTANCE_SENSOR, &payload)
     }
 
-    /// Sends what each sensor sees, in their order, and names those that do not answer. While none sees anything, or
-    /// one holds the others back, no distances are sent: both autopilots then find after half a second that they have
-    /// no data.
+    /// Sends the views of all sensors, and names those that do not answer. While no sensor sees anything, or one holds
+    /// the others back, no distances are sent: both autopilots notice after half a second that they have no data.
     pub(crate) fn picture(&mut self, views: &[(View, f32)]) -> std::io::Result<()> {
         self.listen();
         self.failed = views.iter().map(|(view, _)| *view == View::Unanswered).collect();
@@ -235,21 +234,21 @@ impl Mavlink {
         let [least, most] = self.limits();
         match distance {
             Distance::At(metres) => centimetres(metres).clamp(least, most),
-            // More than the maximum is what flight controllers take for nothing.
+            // Flight controllers take more than the maximum for nothing in range.
             Distance::Clear => most.saturating_add(1),
-            // Less than the minimum they take for nothing, too; but something is there.
+            // They take less than the minimum for nothing, too, but something is there.
             Distance::TooClose => least,
         }
     }
 
-    /// The payload: first the large fields, then the small ones, then what `MAVLink` 2 added.
+    /// The payload: first the large fields, then the small ones, then the fields that `MAVLink` 2 added.
     fn distance_sensor(&self, sensor: u8, rotation: u8, distance: Distance, time_boot_ms: u32) -> Vec<u8> {
         let [least, most] = self.limits();
         let mut payload = time_boot_ms.to_le_bytes().to_vec();
         payload.extend([least, most, self.centimetres_of(distance)].iter().flat_map(|field| field.to_le_bytes()));
         payload.extend([MAV_DISTANCE_SENSOR_ULTRASOUND, sensor, rotation, COVARIANCE_UNKNOWN]);
         payload.extend([self.field_of_view_rad; 2].iter().flat_map(|field| field.to_le_bytes()));
-        // The quaternion is for rotations without a name.
+        // The quaternion is for custom rotations.
         payload.extend([0; 16]);
         payload.push(QUALITY_PERFECT);
         payload
@@ -265,7 +264,7 @@ impl Mavlink {
         payload
     }
 
-    /// The distance of each sector, by its middle.
+    /// The distance of each sector, taken at its middle.
     fn sectors(&self, views: &[(View, f32)]) -> [u16; SECTORS] {
         let half_view_deg = (self.field_of_view_rad.to_degrees() / 2.0).max(LEAST_HALF_VIEW_DEG) + 1e-3;
         let half_view = f64::from(half_view_deg).to_radians();
@@ -296,7 +295,7 @@ mod tests {
         Mavlink::open(&Parameters { mavlink: "udp:127.0.0.1:14550".to_owned(), ..given }).unwrap()
     }
 
-    /// The sector whose middle is nearest to a direction in degrees, clockwise from ahead.
+    /// The sector whose middle is nearest to a direction, in degrees clockwise from straight ahead.
     fn sector(deg: f32) -> usize {
         ((deg - FIRST_SECTOR_DEG) / SECTOR_DEG).rem_euclid(SECTORS as f32) as usize
     }
@@ -307,7 +306,7 @@ mod tests {
             let sensors = yaws_deg.len() as u8;
             opened(Parameters { sensors, yaws_deg: yaws_deg.to_vec(), ..Parameters::default() }).rotations
         };
-        // Counter-clockwise is given, clockwise sent.
+        // Parameters count counter-clockwise, messages clockwise.
         assert_eq!(rotations(&[90.0, -30.0, 359.9, 180.0]), [Some(6), None, Some(0), Some(4)]);
         assert_eq!(rotations(&[0.0, 22.5, 45.0]), [None, None, None]);
         assert_eq!(rotations(&[-45.0, -67.6]), [Some(1), None]);
@@ -320,7 +319,7 @@ mod tests {
     #[test]
     fn sectors_hold_the_nearest_then_the_unknown_then_clear() {
         use Distance::{At, Clear, TooClose};
-        // Two sensors ahead share the sector straight ahead, and one looks back.
+        // Two front sensors share the sector straight ahead, and one looks back.
         let parameters = |mavlink_unanswered_as| Parameters {
             sensors: 3,
             yaws_deg: vec![10.0, -10.0, 180.0],
@@ -348,7 +347,7 @@ mod tests {
         assert_eq!(said(UnansweredAs::Unknown, View::Unanswered, near), [UNKNOWN, 100, 100]);
     }
 
-    /// Number and payload of each frame that a receiver gets within a moment.
+    /// Number and payload of each frame that a receiver gets within a short time.
     fn received(receiver: &UdpSocket) -> Vec<(u8, Vec<u8>)> {
         let mut buffer = [0; 512];
         let mut frames = Vec::new();
@@ -386,7 +385,7 @@ mod tests {
         assert_eq!(said.len(), 1);
         assert_eq!((said[0].0, &said[0].1[1..]), (status, &b"eeruf: sensor 1 (0 deg) does not answer"[..]));
         assert!(sent(&mut sender, cut).is_empty());
-        // Another vehicle's arming is not ours.
+        // Heartbeats of another vehicle do not count.
         heartbeat(2, MAV_MODE_FLAG_SAFETY_ARMED);
         assert!(sent(&mut sender, cut).is_empty());
         heartbeat(1, MAV_MODE_FLAG_SAFETY_ARMED);

@@ -1,6 +1,6 @@
-//! The update rules of Nav2's costmap layers, as `range_sensor_layer.cpp`, `obstacle_layer.cpp`,
-//! `observation_buffer.cpp` and `raytrace_line_2d.hpp` of navigation2 a3a97043 have them, fed with what a
-//! simulated ring reads.
+//! The update rules of Nav2's costmap layers, from `range_sensor_layer.cpp`, `obstacle_layer.cpp`,
+//! `observation_buffer.cpp` and `raytrace_line_2d.hpp` of navigation2 a3a97043, applied to the readings of a simulated
+//! ring.
 
 use std::sync::Arc;
 
@@ -69,11 +69,11 @@ fn bearing(at: At, [x, y]: [f64; 2]) -> (f64, f64) {
 }
 
 trait Layer {
-    /// One update of the costmap, by the last scan and the ranges since the last update; costs of the master grid.
+    /// Updates the costmap with the last scan and the ranges since then; returns the costs of the master grid.
     fn update(&mut self, scan: Option<(At, &LaserScan)>, ranges: &[(At, f32)]) -> Grid;
 }
 
-/// The parameters of the shipped file that the rules read.
+/// The obstacle layer, with the parameters of the shipped file that its rules use.
 struct Obstacles {
     grid: Grid,
     raytrace_max_range: f64,
@@ -100,7 +100,7 @@ impl Obstacles {
             assert_eq!(value(key), expected, "{key}");
         }
         let heights = |key: &str| file.lines().filter(|line| line.trim().starts_with(key)).count();
-        // Of the layer and of the source, whose maximum would be 0.
+        // Both for the layer and for the source, whose maximum would be 0.
         assert_eq!((heights("min_obstacle_height: -0.5"), heights("max_obstacle_height: 2.0")), (2, 2));
         let metres = |key| value(key).parse().unwrap();
         let [raytrace_max_range, obstacle_max_range] = ["raytrace_max_range", "obstacle_max_range"].map(metres);
@@ -114,7 +114,7 @@ impl Obstacles {
         (metres / self.grid.cell_m).ceil()
     }
 
-    /// Clears the cells of a line, no further than the raytrace range.
+    /// Clears the cells of a line, up to the raytrace range.
     fn trace(&mut self, from: [i32; 2], to: [i32; 2]) {
         let [dx, dy] = [to[0] - from[0], to[1] - from[1]];
         let scale = (self.cells(self.raytrace_max_range) / f64::from(dx).hypot(f64::from(dy))).min(1.0);
@@ -165,12 +165,12 @@ impl Layer for Obstacles {
     }
 }
 
-/// The range layer, `phi` 1.2, cleared at the maximum: of cones alone, or as this project's file was at e124fa7.
+/// The range layer, `phi` 1.2, clearing at the maximum: cones alone, or this project's file of e124fa7.
 struct Ranges {
     grid: Grid,
     half_view: f64,
     max_m: f32,
-    /// Cells marked by the obstacle layer, which cleared none. `inflate_cone` 1.0: the box of a cone is updated.
+    /// Cells marked by the obstacle layer, which cleared none. With `inflate_cone` 1.0 the box of a cone is updated.
     as_shipped: Option<Vec<bool>>,
 }
 
@@ -203,7 +203,7 @@ impl Ranges {
 impl Layer for Ranges {
     fn update(&mut self, _: Option<(At, &LaserScan)>, ranges: &[(At, f32)]) -> Grid {
         for &(at, range) in ranges {
-            // +Inf went out as the maximum, and what is too close is dropped.
+            // +Inf was sent as the maximum, and ranges that are too close are dropped.
             let clear = range >= self.max_m;
             let range = f64::from(range.min(self.max_m));
             if range < 0.0 {
@@ -237,7 +237,7 @@ impl Layer for Ranges {
                 let prior = f64::from(self.grid.costs[index]) / 254.0;
                 let occupied = sensor * prior;
                 let probability = occupied / (occupied + (1.0 - sensor) * (1.0 - prior));
-                // No number becomes 0, as it does there.
+                // NaN becomes 0, as it does in Nav2.
                 self.grid.costs[index] = (254.0 * probability) as u8;
             }
         }
@@ -254,7 +254,7 @@ impl Layer for Ranges {
     }
 }
 
-/// A case: sensors on a circle of 20 cm, this far apart, a wall ahead, a person who crosses 1.5 m ahead, a turn.
+/// A case: sensors on a circle of 20 cm, a wall ahead, maybe a person who crosses 1.5 m ahead, or a turn.
 #[derive(Clone, Copy, Debug)]
 struct Case {
     spacing_deg: f64,
@@ -281,16 +281,16 @@ impl Case {
     }
 }
 
-/// Counts, over all updates after the first second.
+/// Counts over all updates after the first second.
 #[derive(Clone, Copy, Debug, Default)]
 struct Shares {
-    /// Directions in which a sensor has seen the wall for a second, and those of them without a mark up to the wall.
+    /// Directions in which a sensor has seen the wall for a second; and how many have no mark up to the wall.
     walls: [u32; 2],
-    /// Cells that were marked and that every sensor has seen through for a second, and those of them still marked.
+    /// Number of marked cells that every sensor has seen through for a second, and of those still marked.
     left: [u32; 2],
 }
 
-/// Duration of a case, and the intervals of costmap and scan, in seconds.
+/// Duration of a case, in seconds; the intervals of costmap and scan are in steps.
 const LASTS_S: f64 = 8.0;
 const UPDATE_STEPS: u32 = 10;
 const SCAN_STEPS: u32 = 5;
@@ -334,7 +334,7 @@ fn played(case: Case, cell_m: f64, layer: &mut dyn Layer) -> Shares {
         let map = layer.update(last.as_ref().map(|(at, scan)| (*at, scan)), &ranges);
         ranges.clear();
         let sensors: Vec<At> = places.iter().map(|place| place_on_map(at, place)).collect();
-        // Those whose cone holds the point, or a part of its cell: how far it is, and how far they see alone.
+        // Sensors whose cone holds the point, or a part of its cell: its distance, and the range they see alone.
         let looking = |point, part_m: f64| {
             let from = sensors.iter().zip(&alone).map(move |(&sensor, alone)| (bearing(sensor, point), *alone));
             let held = from.filter(move |((metres, angle), _)| angle.abs() < half_view + part_m / metres);
@@ -362,7 +362,7 @@ fn played(case: Case, cell_m: f64, layer: &mut dyn Layer) -> Shares {
                 continue;
             }
             let point = map.middle(index);
-            // The wall is heard at times where it is off a sensor's axis: an arc at its distance is no remnant.
+            // The wall is sometimes heard off a sensor's axis: an arc at its distance is not a remnant.
             let is_of_wall = sensors.iter().any(|&at| (bearing(at, point).0 - (wall_m - at[0])).abs() < 2.0 * cell_m);
             let through = |(metres, alone): (f64, f64)| metres < 3.7 && alone > metres + 2.0 * cell_m && !is_of_wall;
             let is_seen_through = looking(point, 0.0).next().is_some() && looking(point, cell_m).all(through);
@@ -375,7 +375,7 @@ fn played(case: Case, cell_m: f64, layer: &mut dyn Layer) -> Shares {
     shares
 }
 
-/// Walls at three distances, a person before a wall, a turn; sensors far apart, and with cones that overlap.
+/// Walls at three distances, a person in front of a wall, a turn; sensors far apart, and with overlapping cones.
 fn cases() -> Vec<Case> {
     let mut cases = Vec::new();
     for spacing_deg in [45.0, 15.0] {
@@ -386,7 +386,7 @@ fn cases() -> Vec<Case> {
     cases
 }
 
-/// Plays all cases with cells of 5 and 10 cm.
+/// Runs all cases with cells of 5 and 10 cm.
 fn all(layer: impl Fn(f64) -> Box<dyn Layer>, expected: impl Fn(Case, Shares) -> bool) {
     for cell_m in [0.05, 0.1] {
         for case in cases() {
@@ -407,7 +407,7 @@ fn obstacle_layer_keeps_walls_and_forgets_persons() {
     );
 }
 
-// Why this project has no file for it: beyond `phi` nothing but a single cell is marked, and what is free stays free.
+// The reason why this project has no file for it: beyond `phi` only a single cell is marked, and free cells stay free.
 #[test]
 fn range_layer_frees_walls_that_sensors_see() {
     all(
@@ -419,7 +419,7 @@ fn range_layer_frees_walls_that_sensors_see() {
     );
 }
 
-// Clear cones free walls that stand, and of a person who has left every mark stays.
+// Clear cones erase walls that still stand, and every mark of a person who has left stays.
 #[test]
 fn file_of_e124fa7_fails_the_model() {
     all(

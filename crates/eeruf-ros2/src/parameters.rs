@@ -1,4 +1,4 @@
-//! The source of readings.
+//! The parameters of the node: their defaults, their YAML file, and checks.
 
 use std::fmt::{self, Write as _};
 use std::path::PathBuf;
@@ -8,11 +8,11 @@ use ros2_client::ParameterValue;
 use serde::de::{DeserializeSeed, IgnoredAny, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer};
 
-/// Where readings come from.
+/// The source of readings.
 #[derive(Clone, Copy, Debug, Default, Deserialize, PartialEq, Eq)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Source {
-    /// A board on a serial line, which filters.
+    /// A board on a serial line, which filters by itself.
     #[default]
     Serial,
     /// HC-SR04 modules on this machine's own pins.
@@ -53,12 +53,12 @@ macro_rules! parameters {
         const DESCRIBED: &[(&str, &[&str], &str)] = &[$((stringify!($name), &[$($doc),+], $shown),)+];
 
         impl Parameters {
-            /// Names and values, as the services of parameters give them.
+            /// Names and values, for the parameter services.
             pub(crate) fn values(&self) -> Vec<(&'static str, ParameterValue)> {
                 vec![$((stringify!($name), self.$name.value()),)+]
             }
 
-            /// Sets the parameter of this name.
+            /// Sets the parameter with this name.
             fn set<'de, D: Deserializer<'de>>(&mut self, name: &str, value: D) -> Result<(), D::Error> {
                 const NAMES: &[&str] = &[$(stringify!($name)),+];
                 match name {
@@ -76,15 +76,15 @@ parameters! {
     source: Source = Source::Serial, "serial";
     /// The board's serial line.
     port: String = "/dev/ttyACM0".to_owned(), "/dev/ttyACM0";
-    /// The speed; without effect on USB.
+    /// The baud rate; it has no effect over USB.
     baud: u32 = 115_200, "115200";
-    /// For gpio: the chip, and its line for the trigger and for the echo of each sensor; the ring file says the rest.
+    /// For gpio: the chip, and its trigger and echo line for each sensor; all else is in the ring file.
     gpio_chip: String = "/dev/gpiochip0".to_owned(), "/dev/gpiochip0";
-    /// On a Raspberry Pi the numbers after GPIO, not those of the header.
+    /// On a Raspberry Pi: GPIO numbers, not pins of the header.
     trigger_lines: Vec<u32> = Vec::new(), "[]";
     /// An HC-SR04 answers with 5 V: a Raspberry Pi needs a divider to 3.3 V on each.
     echo_lines: Vec<u32> = Vec::new(), "[]";
-    /// For gpio by flow: the robot's speeds (nav_msgs/Odometry); none: the ring file's.
+    /// For gpio by flow: the robot's speeds (nav_msgs/Odometry); without messages, the ring file's.
     odometry_topic: String = "odom".to_owned(), "odom";
     /// For simulation: a scene file, whose first robot is the ring, and how it fires and filters.
     scene: PathBuf = PathBuf::new(), "\"\"";
@@ -94,7 +94,7 @@ parameters! {
     map_frame: String = "map".to_owned(), "map";
     /// A ring file with poses or a URDF: number and places of the sensors, for /tf_static, the cloud, MAVLink.
     ring: PathBuf = PathBuf::new(), "\"\"";
-    /// The number of sensors, if no ring file says it.
+    /// The number of sensors, unless a ring file gives it.
     sensors: u8 = 8, "8";
     /// One topic for each sensor; none: ~/sonar_1, ~/sonar_2, ..
     topics: Vec<String> = Vec::new(), "[]";
@@ -106,9 +106,9 @@ parameters! {
     height_m: f64 = 0.0, "0.0";
     /// The full width of a sensor's beam.
     field_of_view_rad: f32 = 0.52, "0.52";
-    /// Closer than this nothing is measured.
+    /// The minimum range of a sensor.
     min_range_m: f32 = 0.02, "0.02";
-    /// Farther than this nothing counts.
+    /// The maximum range; echoes from beyond it do not count.
     max_range_m: f32 = 4.0, "4.0";
     /// The temperature of the air.
     temperature_c: f32 = 20.0, "20.0";
@@ -129,14 +129,14 @@ parameters! {
     /// A sensor that does not answer: hold (no distances before arming, then unknown), unknown, or obstacle (at
     /// min_range_m; for ground vehicles, since copters back away from it).
     mavlink_unanswered_as: UnansweredAs = UnansweredAs::Hold, "hold";
-    /// The heading of each sensor, counter-clockwise from ahead, if no ring file says it; none: evenly around.
+    /// The heading of each sensor, counter-clockwise from ahead, unless a ring file gives it; none: evenly around.
     yaws_deg: Vec<f32> = Vec::new(), "[]";
-    /// Stamps are by the host's clock: true is an error.
+    /// Time stamps always use the host's clock: true is an error.
     use_sim_time: bool = false, "false";
 }
 
 trait Value {
-    /// The value as the file says it: 0.52, not 0.5199999809.
+    /// The value as written in the file: 0.52, not 0.5199999809.
     fn value(&self) -> ParameterValue;
 }
 
@@ -166,7 +166,7 @@ values! {
     Vec<String>: it => StringArray(it.clone());
 }
 
-/// One parameter, to be set.
+/// Sets one parameter.
 struct One<'p>(&'p mut Parameters, &'p str);
 
 impl<'de> DeserializeSeed<'de> for One<'_> {
@@ -177,7 +177,7 @@ impl<'de> DeserializeSeed<'de> for One<'_> {
     }
 }
 
-/// The parameters of one node, to be set.
+/// Sets the parameters of one node.
 struct All<'p>(&'p mut Parameters);
 
 impl<'de> DeserializeSeed<'de> for All<'_> {
@@ -207,8 +207,8 @@ impl<'de> Visitor<'de> for All<'_> {
     }
 }
 
-/// A part of a file: of nodes, namespaces, or patterns for them. Sets the parameters that are for this node and skips
-/// the others, whatever they hold.
+/// A part of a file, for nodes, namespaces, or patterns of them. Sets the parameters for this node and skips all
+/// others, whatever they contain.
 struct Nodes<'p> {
     /// Path of the part: empty at the top, otherwise like `/robot_1/eeruf`.
     path: String,
@@ -263,7 +263,7 @@ impl<'de> Visitor<'de> for Nodes<'_> {
     }
 }
 
-/// Returns true if a pattern stands for the full name: `*` for one part of it, `**` for any number.
+/// Returns true if a pattern matches the full name: `*` matches one part of it, `**` any number of parts.
 fn matches(pattern: &str, name: &str) -> bool {
     fn parts<'p>(pattern: &[&'p str], name: &[&'p str]) -> bool {
         match (pattern, name) {
@@ -279,7 +279,7 @@ fn matches(pattern: &str, name: &str) -> bool {
 }
 
 impl Parameters {
-    /// All parameters with their defaults, as a file.
+    /// All parameters with their defaults, as a YAML file.
     pub(crate) fn file() -> String {
         let mut file = "/**:\n  ros__parameters:\n".to_owned();
         for (name, comment, default) in DESCRIBED {

@@ -12,7 +12,7 @@ use crate::parameters::Parameters;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Placing {
     pub(crate) places: Vec<Place>,
-    /// The links of the robot's URDF, whose frames another node publishes.
+    /// Links of the robot's URDF, whose frames another node publishes.
     pub(crate) urdf_links: Vec<String>,
 }
 
@@ -49,7 +49,7 @@ impl Placing {
             if ring.urdf_links.contains(frame) {
                 return Err(format!("base_frame: {frame}; expected {base}, from which the URDF's poses are taken"));
             }
-            // A frame with another name may be the same with a prefix.
+            // A frame with another name may be the same frame with a prefix.
             if *frame == Parameters::default().base_frame {
                 *frame = base;
             }
@@ -70,7 +70,7 @@ impl Placing {
         Self { places: poses.iter().map(place).collect(), urdf_links: vec![] }
     }
 
-    /// The sensors' places with their frames, except the URDF's own links, which the robot's publisher publishes.
+    /// The places of sensors with their frames, except links of the URDF, which the robot's own publisher publishes.
     pub(crate) fn frames<'a>(&'a self, frame_ids: &'a [String]) -> impl Iterator<Item = (&'a Place, &'a String)> {
         self.places.iter().zip(frame_ids).filter(|(_, frame_id)| !self.urdf_links.contains(frame_id))
     }
@@ -128,7 +128,7 @@ mod tests {
         let Place { x_m, y_m, z_m, yaw_rad } = placing.places[1];
         assert_eq!((x_m, y_m, z_m), (0.2, -0.1, 0.15));
         assert!((yaw_rad + 0.5).abs() < 1e-12);
-        // Another robot's prefix stays; a link that poses are not taken from is refused.
+        // Another robot's prefix stays; a link that is not the base of the poses is refused.
         assert_eq!(read_with_urdf("robot_1/chassis").unwrap().1.base_frame, "robot_1/chassis");
         let error = read_with_urdf("left").unwrap_err();
         assert_eq!(error, "base_frame: left; expected chassis, from which the URDF's poses are taken");

@@ -1,10 +1,10 @@
-//! From echo times to what a `sensor_msgs/Range` says, by REP 117.
+//! Conversion of echo times to the values of a `sensor_msgs/Range`, by REP 117.
 
 use eeruf_core::{Micros, ReadingKind, SpeedOfSound};
 
 use crate::parameters::Parameters;
 
-/// The distance of a reading, or its meaning.
+/// The distance that a reading means.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Distance {
     /// Something is there, in metres.
@@ -39,7 +39,7 @@ impl Scale {
         f64::from(t_echo.as_micros()) * 1e-6 * self.sound_m_s / 2.0
     }
 
-    /// Returns what a reading means; `None` if it says nothing: rejected, ambiguous, unanswered, or not yet confirmed.
+    /// Returns the meaning of a reading; `None` if it has none: rejected, ambiguous, unanswered, or not yet confirmed.
     pub(crate) fn distance(&self, kind: ReadingKind, t_echo: Option<Micros>) -> Option<Distance> {
         match (kind, t_echo) {
             (ReadingKind::Accepted, Some(t_echo)) => {

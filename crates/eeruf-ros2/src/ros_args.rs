@@ -1,4 +1,4 @@
-//! The arguments that ROS 2 gives to a node, `--ros-args .. --`, and the names that follow from them.
+//! The arguments that ROS 2 passes to a node, `--ros-args .. --`, and the names that follow from them.
 
 /// ROS's arguments for the node: its name, its namespace, its parameters and remappings of topics.
 #[derive(Clone, Debug, PartialEq)]
@@ -26,7 +26,7 @@ impl Default for RosArgs {
 }
 
 impl RosArgs {
-    /// Takes the parts from `--ros-args` to `--` or the end out of a command line.
+    /// Removes the parts from `--ros-args` to `--` or the end from a command line, and parses them.
     pub(crate) fn take_from(arguments: &mut Vec<String>) -> Result<Self, String> {
         let (mut own, mut ros) = (Vec::new(), None);
         let mut read = Self::default();
@@ -58,7 +58,7 @@ impl RosArgs {
                     }
                 }
                 "--params-file" => self.given.push(Given::File(value()?)),
-                // What the node says goes to standard error, whatever the level; it has no enclave.
+                // The node's output goes to standard error at any level, and the node has no enclave.
                 "--log-level" | "--log-config-file" | "--log-file-name" | "-e" | "--enclave" => {
                     value()?;
                 }
@@ -106,8 +106,8 @@ impl RosArgs {
         format!("{}/{}", self.namespace, self.node)
     }
 
-    /// The full name of a topic: `~` stands for the node, others are within its namespace. The first rule that renames
-    /// it counts.
+    /// The full name of a topic: `~` stands for the node, other names are within its namespace. The first matching rule
+    /// renames it.
     pub(crate) fn topic(&self, name: &str) -> String {
         let full = self.expand(name);
         let renamed = self.rules.iter().find(|(from, _)| self.expand(from) == full);

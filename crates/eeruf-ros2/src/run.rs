@@ -1,4 +1,4 @@
-//! The main loop: frames from the board become ranges, diagnostics, `MAVLink` messages and a log.
+//! The main loop, which turns frames from the board into ranges, diagnostics, `MAVLink` messages and a log.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -21,7 +21,7 @@ use crate::ros::Ros;
 use crate::simulated::Simulator;
 use crate::view::View;
 
-/// Interval at which topics are polled; a ring of 64 has a reading every millisecond or two.
+/// Interval at which topics are polled; a ring of 64 sensors has a reading every millisecond or two.
 const LOOK: Duration = Duration::from_millis(5);
 /// The shortest time between two messages about the whole ring.
 const PICTURE: Duration = Duration::from_millis(100);
@@ -87,7 +87,7 @@ fn source(parameters: &Parameters) -> String {
 struct EerufNode {
     ros: Option<Ros>,
     simulator: Option<Simulator>,
-    /// Readings that each sensor of the simulation would have had alone at its last firing.
+    /// The reading that each simulated sensor would have had alone at its last firing.
     truth: Vec<(View, f32)>,
     mavlink: Option<Mavlink>,
     log: Option<FiringLog>,
@@ -198,7 +198,7 @@ impl EerufNode {
     fn simulate(&mut self) -> Result<(), String> {
         let Some(simulator) = &mut self.simulator else { return Ok(()) };
         match self.ros.as_ref().and_then(Ros::velocity) {
-            // A velocity that cannot be driven does not end the simulation.
+            // An invalid velocity does not end the simulation.
             Some(Ok((v_m_s, w_rad_s))) => {
                 if let Err(error) = simulator.drive(v_m_s, w_rad_s) {
                     self.say_once(&error);
@@ -228,7 +228,7 @@ impl EerufNode {
         let heard: Vec<_> = self.ros.iter().flat_map(Ros::take).collect();
         for speeds in heard {
             match speeds {
-                // A thread that has ended says why.
+                // A thread that has ended reports the reason.
                 Ok(speeds) => _ = self.speeds.as_ref().map(|to| to.send(speeds)),
                 Err(why) => self.say_once(&why),
             }

@@ -10,12 +10,12 @@ use eeruf_sim::{Fault, FaultKind, Method, Options, Simulation, Stop, World};
 use crate::board_line::nanoseconds;
 use crate::placing::Placing;
 
-/// The longest time simulated in one step, in seconds, so that messages come evenly.
+/// The longest time simulated in one step, in seconds, so that messages come at even intervals.
 const PIECE_S: f64 = 0.02;
 /// Delay, in seconds, beyond which a slow simulation no longer catches up with real time.
 const BEHIND_S: f64 = 1.0;
 
-/// Reads the scene of a file.
+/// Reads a scene file.
 pub(crate) fn world(file: &Path) -> Result<Arc<World>, String> {
     let text = std::fs::read_to_string(file).map_err(|error| format!("simulate: {}: {error}", file.display()))?;
     let world = World::from_text_with(file, &text, eeruf_design::robot_ring);
@@ -32,11 +32,11 @@ pub(crate) struct Simulated {
     pub(crate) firing: FiringMessage,
     /// Time of the firing, by the host's clock.
     pub(crate) fired_ns: i64,
-    /// The echo time of a sensor that fires alone; none if nothing is in range.
+    /// The echo time that the sensor would have alone; `None` if nothing is in range.
     pub(crate) truth: Option<Micros>,
 }
 
-/// The reading that a driver would report for a line silenced by a fault; the simulator itself takes that for silence.
+/// The reading that a driver would report for a line silenced by a fault; the simulator itself reports silence.
 fn broken(faults: &[Fault], sensor: u8, time_s: f64) -> Option<ReadingKind> {
     let mut there = faults.iter().filter(|fault| fault.is_of(0, sensor) && fault.is_at(time_s));
     there.find_map(|fault| match fault.kind {
@@ -60,7 +60,7 @@ pub(crate) struct Course {
 pub(crate) struct Simulator {
     simulation: Simulation,
     began_ns: i64,
-    /// Wall time that was left out because the simulation is slower.
+    /// Real time that was skipped because the simulation is slower.
     skipped_s: f64,
 }
 
@@ -72,7 +72,7 @@ impl Simulator {
         Ok(Self { simulation, began_ns: nanoseconds(), skipped_s: 0.0 })
     }
 
-    /// Simulates the real time that has passed. Returns the readings, and true if the simulation is too slow for it.
+    /// Simulates the real time that has passed. Returns the readings, and true if the simulation falls behind.
     pub(crate) fn go_on(&mut self) -> Result<(Vec<Simulated>, bool), String> {
         let passed_s = (nanoseconds() - self.began_ns) as f64 * 1e-9 - self.skipped_s;
         let behind_s = passed_s - self.simulation.time_s();
@@ -149,7 +149,7 @@ mod tests {
         assert!(read.iter().all(|read| read.fired_ns >= began && read.fired_ns <= nanoseconds()));
         let course = simulator.course().unwrap();
         assert!(course.x_m > 0.01 && (course.v_m_s - 0.5).abs() < 1e-9, "{course:?}");
-        // The wall, from the two sensors that look nearly at it.
+        // The wall, seen by the two sensors that face it best.
         let near = read.iter().filter_map(|read| read.truth).map(Micros::as_micros).min().unwrap();
         assert!((8_000..11_000).contains(&near), "{near} us");
         assert!(Simulator::new(world, "eruf").is_err_and(|error| error.starts_with("method: ")));

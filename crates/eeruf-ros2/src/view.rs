@@ -1,15 +1,15 @@
-//! The published state of the space before each sensor.
+//! The published state of the space in front of each sensor.
 
 use eeruf_core::{Micros, ReadingKind, watch::SensorState};
 
 use crate::range::{Distance, Scale};
 
-/// State of the space before a sensor.
+/// State of the space in front of a sensor.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum View {
     /// The sensor works, and sees this.
     Sees(Distance),
-    /// The sensor does not answer, its line is broken, or it no longer fires: the space before it is not free.
+    /// The sensor does not answer, its line is broken, or it no longer fires: the space in front of it is not free.
     Unanswered,
     /// Nothing is confirmed: not yet, or readings are rejected or ambiguous.
     Unknown,

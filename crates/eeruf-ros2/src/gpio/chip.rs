@@ -1,4 +1,4 @@
-//! Lines of a GPIO character device: the kernel stamps their edges when they come, however late they are read.
+//! Lines of a GPIO character device, whose edges the kernel stamps when they come, however late they are read.
 
 use std::cell::Cell;
 use std::hint::spin_loop;

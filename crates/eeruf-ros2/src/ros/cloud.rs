@@ -1,4 +1,4 @@
-//! The state of all sensors as a `PointCloud2`, a point for each in their order, and of the ring as a `LaserScan`.
+//! The state of all sensors as a `PointCloud2`, with a point for each in order, and of the ring as a `LaserScan`.
 
 use std::f32::consts::{PI, TAU};
 
@@ -23,8 +23,8 @@ const FIELDS: [(&str, u32, u8); 6] = [
 ];
 const POINT: u32 = 20;
 
-/// The cloud of the sensors' views, with their ages in seconds. Where no obstacle is, the point is NaN: a reader that
-/// knows nothing of states finds no obstacle there, and no free space either.
+/// The cloud of the sensors' views, with their ages in seconds. Without an obstacle, the point is NaN: a reader that
+/// ignores states finds neither an obstacle nor free space there.
 pub(super) fn cloud(header: Header, places: &[Place], views: &[(View, f32)], min_m: f32) -> PointCloud2 {
     let mut data = Vec::new();
     for ((place, &(view, age_s)), sensor) in places.iter().zip(views).zip(0_u8..) {
@@ -60,7 +60,7 @@ pub(super) fn cloud(header: Header, places: &[Place], views: &[(View, f32)], min
 }
 
 /// The scan of the ring from the robot's centre, counter-clockwise from behind: an obstacle's distance, `+Inf` where
-/// the ring is clear, NaN where it does not know.
+/// the ring is clear, NaN where it is unknown.
 pub(crate) fn scan(header: Header, places: &[Place], views: &[(View, f32)], view_rad: f32, scale: &Scale) -> LaserScan {
     let angle_increment = TAU / f32::from(RAYS);
     let ray = |n: u16| {

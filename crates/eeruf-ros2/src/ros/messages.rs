@@ -1,4 +1,4 @@
-//! The few messages that the node speaks, field by field as ROS 2 defines them.
+//! The few messages that the node sends and receives, with the fields that ROS 2 defines.
 
 use serde::{Deserialize, Serialize};
 
@@ -126,7 +126,7 @@ pub(crate) struct Quaternion {
 }
 
 impl Quaternion {
-    /// A turn about the axis that points up.
+    /// A rotation about the vertical axis.
     pub(crate) fn from_yaw(yaw_rad: f64) -> Self {
         let (sin, cos) = (yaw_rad / 2.0).sin_cos();
         Self { x: 0.0, y: 0.0, z: sin, w: cos }

@@ -1,4 +1,4 @@
-//! The node's part in ROS 2: what it publishes and subscribes to, over DDS.
+//! The node's side in ROS 2: its publishers and subscriptions, over DDS.
 
 pub(crate) mod cloud;
 pub(crate) mod messages;
@@ -62,8 +62,8 @@ pub(crate) struct Ros {
     hardware: String,
 }
 
-/// Quality of service for publishing: reliable for subscribers that ask for it. One that does not acknowledge delays
-/// the node by no more than this.
+/// Quality of service for publishing: reliable for subscribers that ask for it. A subscriber that does not acknowledge
+/// delays the node by at most this long.
 const PUBLISHING: QosProfile = QosProfile::publisher_default()
     .reliability_reliable(WhenFull::Wait(Duration::from_millis(10)))
     .history(History::KeepLast { depth: 10 });
@@ -81,7 +81,7 @@ impl Ros {
         let context = Context::from_domain_participant(participant).map_err(wrong("DDS"))?;
         let node_name = NodeName::new(args.namespace(), &args.node).map_err(wrong(&args.full_name()))?;
         let mut node = context.new_node(node_name, options(parameters)).map_err(wrong("node"))?;
-        // It answers those who ask for parameters, until the node is dropped.
+        // Answers requests for parameters until the node is dropped.
         let spinner = node.spinner().map_err(wrong("parameters"))?;
         std::thread::spawn(|| {
             block_on(spinner.spin()).inspect_err(|error| eprintln!("eeruf-ros2: parameters: {error}"))
@@ -121,7 +121,7 @@ impl Ros {
         ros2_client::rosout!(self.node, LogLevel::Info, "{what}");
     }
 
-    /// Publishes a sensor's range, of a firing at this time; false if that cannot be sent.
+    /// Publishes a sensor's range, for a firing at this time; false if sending failed.
     pub(crate) fn publish_range(&self, sensor: u8, fired_ns: i64, range: f32) -> bool {
         let at = usize::from(sensor);
         let (Some(publisher), Some(frame_id)) = (self.ranges.get(at), self.frame_ids.get(at)) else { return false };
@@ -138,7 +138,7 @@ impl Ros {
         publisher.publish(message).is_ok()
     }
 
-    /// Publishes the views of all sensors, with their ages in seconds, and their scan; false if sending failed.
+    /// Publishes the views of all sensors, with their ages in seconds, and the scan; false if sending failed.
     pub(crate) fn publish_ring(&self, now_ns: i64, views: &[(View, f32)], scale: &Scale) -> bool {
         let Some(placed) = &self.placed else { return true };
         let header = Header { stamp: Time::from_nanoseconds(now_ns), frame_id: placed.base_frame.clone() };
@@ -152,7 +152,7 @@ impl Ros {
         self.scene.as_ref()?.velocity()
     }
 
-    /// Publishes where a simulated robot is and what its sensors would see alone; false if sending failed.
+    /// Publishes a simulated robot's pose and what its sensors would see alone; false if sending failed.
     pub(crate) fn publish_truth(&self, now_ns: i64, course: Course, views: &[(View, f32)]) -> bool {
         let (Some(scene), Some(placed)) = (&self.scene, &self.placed) else { return true };
         scene.publish(Time::from_nanoseconds(now_ns), course, &placed.places, views, self.parameters.min_range_m)

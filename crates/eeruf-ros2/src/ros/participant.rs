@@ -1,20 +1,19 @@
-//! Joining a domain, with a port for acknowledgements that is this node's own.
+//! Joins a domain, with a port for acknowledgements that belongs to this node.
 
 use std::env;
 use std::net::{IpAddr, Ipv4Addr, UdpSocket};
 
 use ros2_client::dds::rustdds::{DomainParticipant, DomainParticipantBuilder};
 
-/// Largest number of participant numbers skipped; the next is used in any case.
+/// Largest number of participant numbers that are skipped; the next one is used in any case.
 const ATTEMPTS: usize = 10;
 
-/// Joins a domain; on this machine alone where `ROS_LOCALHOST_ONLY` is 1 or `ROS_AUTOMATIC_DISCOVERY_RANGE` is
-/// `LOCALHOST`.
+/// Joins a domain; only on this machine if `ROS_LOCALHOST_ONLY` is 1 or `ROS_AUTOMATIC_DISCOVERY_RANGE` is `LOCALHOST`.
 ///
-/// `RustDDS` 0.15 takes the first number whose port for discovery is free. If another participant on this machine has
-/// the number's port for user traffic, as Fast DDS may when both start at the same time, `RustDDS` listens elsewhere
-/// and announces that port all the same: acknowledgements go astray, and lost or latched samples never arrive. Such a
-/// number is passed over.
+/// `RustDDS` 0.15 takes the first number whose port for discovery is free. If another participant on this machine holds
+/// that number's port for user traffic, as Fast DDS may when both start at the same time, `RustDDS` listens elsewhere
+/// but still announces that port: acknowledgements go astray, and lost or latched samples never arrive. Such a number
+/// is skipped.
 pub(super) fn join(domain: u16) -> Result<DomainParticipant, String> {
     let mut passed_over = Vec::new();
     loop {
@@ -52,7 +51,7 @@ fn is_own(port: u16) -> bool {
     numbers.filter_map(|fd| getsockname::<SockaddrIn>(fd).ok()).any(|address| address.port() == port)
 }
 
-/// Returns true: this system does not tell.
+/// Returns true, since this system does not tell.
 #[cfg(not(target_os = "linux"))]
 fn is_own(_: u16) -> bool {
     true

@@ -1,4 +1,4 @@
-//! The rest of a simulation: it publishes where the robot is and what its sensors would see alone, and takes velocity
+//! The ROS side of a simulation: it publishes the robot's pose and what its sensors would see alone, and takes velocity
 //! commands.
 
 use ros2_client::{Publisher, Subscription};
@@ -43,7 +43,7 @@ impl Scene {
         last
     }
 
-    /// Publishes where the robot is, and what each sensor would see alone; false if sending failed.
+    /// Publishes the robot's pose, and what each sensor would see alone; false if sending failed.
     pub(super) fn publish(
         &self,
         stamp: Time,

@@ -1,4 +1,4 @@
-//! Tells the linker where `memory.x` is.
+//! Tells the linker where to find `memory.x`.
 
 fn main() {
     println!("cargo::rustc-link-search={}", env!("CARGO_MANIFEST_DIR"));

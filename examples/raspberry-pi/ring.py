@@ -1,4 +1,4 @@
-"""A ring of HC-SR04 modules on the pins of a Raspberry Pi: ``python ring.py`` prints what is before each, once a second.
+"""A ring of HC-SR04 modules on a Raspberry Pi: ``python ring.py`` prints what is in front of each, once a second.
 
 The kernel stamps the edges of the echo lines, so that a late loop does not make echo times less accurate. Needs the
 packages ``eeruf`` and ``gpiod``.
@@ -12,26 +12,26 @@ import gpiod
 from gpiod.line import Clock, Direction, Edge, Value
 
 CHIP = "/dev/gpiochip0"
-# The lines of each module, in the order in which they sit in the ring.
+# The lines of each module, in the order of the ring.
 TRIGGER_LINES = [5, 6, 13, 19]
 ECHO_LINES = [23, 24, 25, 16]
 
 SOUND_MM_PER_US = 0.3432
-# Times of an HC-SR04, in microseconds. Its line rises 450 us after the trigger; later than LATEST_RISE_US it was raised
-# by something else. A pulse as long as LONGEST_US is its time-out: it heard nothing. Clones hold their line 200 ms.
+# Times of an HC-SR04, in microseconds. Its line rises 450 us after the trigger; a rise after LATEST_RISE_US has another
+# cause. A pulse as long as LONGEST_US is its time-out: it heard nothing. Clones hold the line for 200 ms.
 TRIGGER_US, LATEST_RISE_US, SHORTEST_US, LONGEST_US, LONGEST_HOLD_US = 10, 1_400, 100, 36_000, 250_000
 WINDOW_US = LONGEST_US + 1_000
-# Polled for without sleeping: a process that sleeps wakes up late.
+# The last part of each wait is polled without sleeping, since a sleeping process wakes up late.
 SOON_US = 500
 
 
 def monotonic_us() -> int:
-    """The clock by which the kernel stamps edges, in microseconds."""
+    """Read the clock by which the kernel stamps edges, in microseconds."""
     return time.monotonic_ns() // 1_000
 
 
 class Modules:
-    """Trigger and echo lines of HC-SR04 modules on a GPIO character device, and the clock of their stamps."""
+    """Trigger and echo lines of HC-SR04 modules on a GPIO character device, with the clock of their time stamps."""
 
     def __init__(
         self, chip: str, triggers: Sequence[int], echoes: Sequence[int], now_us: Callable[[], int] = monotonic_us
@@ -47,7 +47,7 @@ class Modules:
         self.rose_us: list[int | None] = [None] * len(triggers)
 
     def fire(self, ring: eeruf.Ring, sensor: int) -> None:
-        """Trigger a module, unless its line is high: then it would not hear the trigger."""
+        """Trigger a module unless its line is high, when it would ignore the trigger."""
         if self.echoes.get_value(self.echo_lines[sensor]) is Value.ACTIVE:
             rose_us = self.rose_us[sensor]
             if rose_us is not None and self.now_us() - rose_us <= LONGEST_HOLD_US:
@@ -64,7 +64,7 @@ class Modules:
         self.fired_us[sensor] = self.now_us()
 
     def take(self, ring: eeruf.Ring, timeout_us: int = 0) -> None:
-        """Hand the ring the edges that have come, or wait this long for the first one."""
+        """Report the edges that have come to the ring, or wait this long for the first one."""
         if not self.echoes.wait_edge_events(timeout_us / 1e6):
             return
         for event in self.echoes.read_edge_events():
@@ -78,17 +78,17 @@ class Modules:
                 self.rose_us[sensor] = None
                 width_us = at_us - rose_us
                 if width_us < SHORTEST_US:
-                    ring.answered(sensor, False)  # a spike is no sign that it listened
+                    ring.answered(sensor, False)  # a spike does not show that it listened
                 elif width_us < LONGEST_US:
                     self.fired_us[sensor] = None  # one pulse for one trigger
                     ring.measured(sensor, width_us)
 
 
 def run(ring: eeruf.Ring, modules: Modules, each: Callable[[eeruf.Reading | eeruf.PeriodEnded], bool]) -> None:
-    """Fire and listen; ``each`` gets readings and ends of periods, until it returns false."""
+    """Fire and listen; pass readings and ends of periods to ``each`` until it returns false."""
     while True:
         now_us = modules.now_us()
-        modules.take(ring)  # after the clock is read: no window closes on an edge that came in time
+        modules.take(ring)  # after the clock is read, so that no window closes on an edge that came in time
         while event := ring.poll(now_us):
             if isinstance(event, eeruf.Fire):
                 modules.fire(ring, event.sensor)
@@ -98,7 +98,7 @@ def run(ring: eeruf.Ring, modules: Modules, each: Callable[[eeruf.Reading | eeru
 
 
 def describe(state: eeruf.State) -> str:
-    """A distance in millimetres, or the reason why there is none."""
+    """Return a distance in millimetres, or the reason why there is none."""
     return f"{state.t_echo_us * SOUND_MM_PER_US / 2:.0f}" if state.t_echo_us is not None else state.kind
 
 

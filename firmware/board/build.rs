@@ -1,4 +1,4 @@
-//! Chooses the board by the target: passes its name as a `cfg`, and its memory map to the linker.
+//! Chooses the board for the target: passes its name as a `cfg` and its memory map to the linker.
 
 use std::path::PathBuf;
 use std::{env, fs};

@@ -1,4 +1,4 @@
-//! The shared cases of `tests/data`, as Rust for programs without files.
+//! Converts the shared cases of `tests/data` to Rust, for programs that cannot read files.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;

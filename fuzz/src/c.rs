@@ -1,11 +1,11 @@
-//! The C library against the crates: both get a ring with the same random events, and must agree.
+//! The C library compared with the crates: both get a ring with the same random events and must agree.
 
 use eeruf_c_equal::{Random, flow, modules, ring};
 
-/// Compares one ring, whose kind the first byte gives.
+/// Compares one ring; the first byte chooses its kind.
 ///
 /// # Panics
-/// Where C and Rust differ.
+/// If C and Rust differ.
 pub fn check(bytes: &[u8]) {
     let r = &Random::of_bytes(bytes);
     match r.within(0, 8) {

@@ -1,9 +1,9 @@
-//! The filter compared with a naive one, which keeps all firings and applies the rule directly.
+//! The filter compared with a naive one that keeps all firings and applies the rule directly.
 
 use arbitrary::Arbitrary;
 use eeruf_core::{EchoFilter, Micros, ReadingKind};
 
-/// The most echoes that a sensor reports of one firing here.
+/// Largest number of echoes a firing in this test.
 const ECHOES: usize = 3;
 
 /// Random input.
@@ -23,20 +23,20 @@ enum Firing {
     Forget,
 }
 
-/// One firing as the naive filter remembers it: its echoes, sorted, and the change that was expected of it.
+/// One firing as the naive filter remembers it: its sorted echoes, and the change expected for it.
 #[derive(Clone, Debug)]
 struct Heard {
     echoes: Vec<u32>,
     expected: i32,
 }
 
-/// Returns true if `echo` is near-identical to `previous`, after taking off the change expected (Eq. 11).
+/// Returns true if `echo` is near-identical to `previous` after subtracting the expected change (Eq. 11).
 fn near(t_delta: u16, echo: u32, previous: u32, expected: i32) -> bool {
     (i128::from(echo) - i128::from(previous) - i128::from(expected)).abs() <= i128::from(t_delta)
 }
 
-/// Returns the number of consecutive firings, the last included, each with an echo near-identical to one of the firing
-/// before, that end with `echo`.
+/// Returns the length of the longest run of firings that ends with `echo` in the last one, in which each firing has an
+/// echo near-identical to one of the firing before.
 fn run(t_delta: u16, firings: &[Heard], echo: u32) -> usize {
     let [before @ .., last] = firings else { return 0 };
     let previous = before.last().map_or(&[][..], |heard| &heard.echoes);
@@ -44,7 +44,7 @@ fn run(t_delta: u16, firings: &[Heard], echo: u32) -> usize {
     1 + longest.map(|&previous| run(t_delta, before, previous)).max().unwrap_or(0)
 }
 
-/// Returns the verdict that the filter should give: the kind and the echo time.
+/// Returns the expected verdict of the filter: the kind and the echo time.
 fn naive(t_delta: u16, consecutive: usize, firings: &[Heard]) -> (ReadingKind, Option<u32>) {
     // Only this many firings matter, and a run through more of them branches.
     let firings = &firings[firings.len().saturating_sub(consecutive)..];
@@ -76,7 +76,7 @@ pub fn check(input: &Firings) {
             Firing::Near(echoes, expected) => {
                 (echoes.iter().flatten().map(|&echo| u32::from(echo)).collect(), i32::from(*expected))
             }
-            // The longest time stands for no echo.
+            // The longest time means no echo.
             Firing::Any(echo, expected) => (echo.iter().copied().filter(|&echo| echo < u32::MAX).collect(), *expected),
             Firing::Forget => {
                 filter.forget(1).expect("there is a sensor 1");
@@ -107,7 +107,7 @@ pub fn check(input: &Firings) {
             assert!(before.contains(&previous));
             assert!(near(t_delta, t_echo.expect("it is an echo"), previous, expected));
         }
-        // The other sensor hears nothing of all this.
+        // The other sensor is not affected.
         assert_eq!(filter.push(0, None).map(|verdict| verdict.t_echo), Ok(None));
     }
 }

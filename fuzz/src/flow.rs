@@ -1,10 +1,10 @@
-//! Rings that fire in turn against what their documentation promises, in true time:
+//! Rings that fire in turn, checked in true time against the promises of their documentation:
 //!
-//! - a firing is of an enabled sensor that has rested, in the least quiet, never while the ring is paused; no call
-//!   leaves what is due in the past, and no firing comes late for a caller who polls in time;
-//! - each firing gives one reading, of its own echoes and evidence: nothing is free space without a witness;
-//! - what two readings or votes are believed for, no firings of any sensor explain as one path of sound;
-//! - counts go on one by one, and the ring never falls silent.
+//! - only enabled, rested sensors fire, after the least quiet and never during a pause; no call moves a deadline into
+//!   the past, and no firing is late for a caller who polls on time;
+//! - each firing gives one reading, from its own echoes and evidence: nothing is free space without a witness;
+//! - two readings or votes that are believed are never explained by firings as one path of sound;
+//! - counts increase one by one, and the ring never falls silent.
 
 use arbitrary::Arbitrary;
 use eeruf_core::{
@@ -40,7 +40,7 @@ pub struct Input {
 #[derive(Arbitrary, Debug)]
 pub enum Kind {
     Plain,
-    /// Rings that take three echoes a firing.
+    /// Rings with up to three echoes a firing.
     Echoes,
     /// Rings in which some sensors fire together and some share an echo line.
     Uneven {
@@ -48,29 +48,29 @@ pub enum Kind {
         line: u8,
         window: u16,
     },
-    /// Rings that believe m of n readings.
+    /// Rings that accept m of n readings.
     Votes {
         m: u8,
         n: u8,
     },
 }
 
-/// Rule by which a judge believes.
+/// The rule by which a judge accepts readings.
 #[derive(Clone, Copy)]
 struct Believes {
     /// Number of readings that must agree.
     m: usize,
     n: usize,
-    /// Largest difference from the belief of a reading that fits it; `None` for a judge without belief.
+    /// Largest difference between the belief and a reading that fits it; `None` for a judge without belief.
     near: Option<Micros>,
-    /// True if the robot stands and the ring knows it.
+    /// True if the robot stands still and the ring knows it.
     stands: bool,
 }
 
 /// Performs all steps on the ring and the model.
 pub fn check(input: &Input) {
     let us = |us: u16| Micros::new(us.into());
-    // Mostly so that sensors hear each other, and in step.
+    // Mostly short, so that sensors hear each other, and in step.
     let [least, more, rest, dice] = input.turns;
     let least = us(100 + least % 8_192);
     let (most, rest) = (least.saturating_add(us(1_000 + more / 2)), us(1_000 + rest / 2));
@@ -139,7 +139,7 @@ struct Heard {
     off: u32,
 }
 
-/// A ring, and true time in 64 bits, while the ring sees a counter that wraps.
+/// A ring, with true time in 64 bits; the ring itself sees a counter that wraps.
 struct Model<U, J, const E: usize, const H: usize> {
     ring: Ring<InTurn<SENSORS, U>, J, SENSORS, E, H>,
     lines: Lines,
@@ -156,7 +156,7 @@ struct Model<U, J, const E: usize, const H: usize> {
     last: Option<(usize, u64)>,
     restarted: u64,
     period: u32,
-    /// Time of the last poll: everything due by then is done.
+    /// Time of the last poll; everything due by then is done.
     polled: u64,
 }
 
@@ -255,7 +255,7 @@ impl<U: OwnLimits, J: Judge, const E: usize, const H: usize> Model<U, J, E, H> {
                 if self.paused { self.ring.pause() } else { self.ring.resume() }
             }
             Step::Fired(by) => self.fired(by),
-            // Of a table, or of a filter.
+            // Steps for tables or filters only.
             _ => {}
         }
         false
@@ -279,7 +279,7 @@ impl<U: OwnLimits, J: Judge, const E: usize, const H: usize> Model<U, J, E, H> {
         self.polled = self.lines.now;
     }
 
-    /// Polls at each deadline until some time.
+    /// Polls at each deadline until this time.
     fn wait(&mut self, until: u64) {
         while self.lines.now < until {
             self.lines.now = time_of(self.ring.next_deadline(), self.lines.now).clamp(self.lines.now, until);
@@ -336,7 +336,7 @@ impl<U: OwnLimits, J: Judge, const E: usize, const H: usize> Model<U, J, E, H> {
         assert!(x < self.ring.sensors() && self.enabled[x] && !self.paused, "sensor {x} is not to fire");
         let hears = |y: usize| self.ring.plan().hears(x as u8, y as u8);
         if let Some((y, at)) = self.last {
-            // Those that fire together do not hear each other.
+            // Sensors that fire together do not hear each other.
             assert!(
                 self.lines.now >= at + self.least || !hears(y),
                 "sensors {y} and {x} {} us apart",
@@ -398,7 +398,7 @@ impl<U: OwnLimits, J: Judge, const E: usize, const H: usize> Model<U, J, E, H> {
         (sensor.is_held, sensor.emitted) = (is_held, Some(open));
     }
 
-    /// Checks each belief of the earlier readings against all firings.
+    /// Checks a belief in earlier readings against all firings.
     fn believe(&self, reading: &Reading, t_echo: u32, now: &Heard, believed: Option<Micros>) {
         let (y, of) = (usize::from(reading.sensor), self.believes);
         let fits = match (of.near, believed) {

@@ -1,7 +1,7 @@
 //! Fuzz targets: each module takes random input and panics if a promise is broken.
 //!
-//! The targets in `fuzz_targets` only call these, so that a finding can be replayed by an ordinary test. Readers of
-//! files take the file itself, so that any file of the repository is a seed.
+//! The targets in `fuzz_targets` only call these functions, so that an ordinary test can replay a finding. Targets for
+//! file formats take whole files, so that any file of the repository can be a seed.
 
 #[cfg(feature = "c")]
 pub mod c;
@@ -23,7 +23,7 @@ fn one_line(error: &str) {
     assert!(!error.is_empty() && !error.contains('\n'), "{error:?}");
 }
 
-/// Returns a folder of this process for files read by path; in memory if the machine offers that.
+/// Returns this process's folder for files that are read by path; in memory if possible.
 #[allow(dead_code)]
 fn folder() -> std::path::PathBuf {
     let memory = std::path::Path::new("/dev/shm");

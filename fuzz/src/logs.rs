@@ -1,5 +1,5 @@
-//! Logs of robots: CSV, logs of firings, and bags, recognised as the program recognises them. Each reading must be of a
-//! known sensor, and each error take one line.
+//! Robot logs: CSV, logs of firings, and bags, recognised by the program's rules. Each reading must belong to a known
+//! sensor, and each error must take one line.
 
 use std::fs;
 use std::io::Write;
@@ -12,7 +12,7 @@ use crate::one_line;
 
 static FOLDER: LazyLock<PathBuf> = LazyLock::new(crate::folder);
 
-/// Reads a bag (`.mcap`, `.bag`, `.db3`, or `metadata.yaml` of a folder beside one), recognised by its first bytes.
+/// Reads a bag (`.mcap`, `.bag`, `.db3`, or the `metadata.yaml` next to one), recognised by its first bytes.
 pub fn bags(bytes: &[u8]) {
     let metadata = b"rosbag2_bagfile_information";
     if bytes.starts_with(metadata) {
@@ -21,7 +21,7 @@ pub fn bags(bytes: &[u8]) {
         write(&folder.join("metadata.yaml"), bytes);
         return read(&folder);
     }
-    // A damaged beginning is no reason not to read the rest; the ending of the name tells.
+    // The file name's ending gives the format, so that a damaged beginning does not hide the rest.
     let ending = match bytes.first() {
         Some(b'#') => "bag",
         Some(b'S') => "db3",
@@ -42,7 +42,7 @@ fn read(file: &Path) {
     let report = read_log(file, &Options::default(), |report, reading| {
         let sensor = &report.sensors[reading.sensor];
         assert!(sensor.beam.is_none_or(|beam| beam < 4096));
-        // Each is one of four, and asking does not fail.
+        // Each echo is one of four kinds, and reading it does not fail.
         _ = reading.echo();
         readings += 1;
     });
@@ -64,7 +64,7 @@ fn said(report: &Report) {
     assert_eq!(report.names().len(), report.sensors.len());
 }
 
-/// Reads a table in each way that its header allows, and as a log of firings.
+/// Reads a table in every way that its header allows, and as a log of firings.
 pub fn tables(bytes: &[u8]) {
     let file = Path::new("file");
     let header = bytes.split(|&byte| byte == b'\n').next().unwrap_or_default();
@@ -105,7 +105,7 @@ fn rows(bytes: &[u8], file: &Path, options: &Options) {
             let mut of = vec![0; sensors];
             for reading in &readings {
                 of[reading.sensor] += 1;
-                // Nothing from the range on that stands for silence is an echo, and no echo is below zero.
+                // No echo is below zero, nor at or beyond the range that stands for silence.
                 if let Echo::At(range_m) = reading.echo() {
                     assert!((0.0..options.no_echo_m).contains(&range_m), "{range_m} m");
                 }
@@ -119,7 +119,7 @@ fn rows(bytes: &[u8], file: &Path, options: &Options) {
     }
 }
 
-/// Returns the line of an error that names one.
+/// Checks that the line of an error, if it names one, exists.
 fn line(error: &eeruf_files::FileError, bytes: &[u8]) {
     let lines = bytes.iter().filter(|&&byte| matches!(byte, b'\n' | b'\r')).count() as u64 + 1;
     assert!(error.line().is_none_or(|line| line <= lines), "{error} of {lines} lines");

@@ -1,4 +1,4 @@
-//! Maps: the YAML file and, from the first line that begins a PGM on, its picture `map.pgm`.
+//! Maps: a YAML file, followed by its picture `map.pgm` from the first line that begins a PGM.
 
 use std::fs;
 use std::path::PathBuf;
@@ -32,7 +32,7 @@ pub fn check(bytes: &[u8]) {
     let cells = (0..height).flat_map(|row| (0..width).map(move |column| (column, row)));
     let occupied = cells.filter(|&(column, row)| grid.is_occupied(column, row)).count();
     let exact = grid.walls(0.0);
-    // Each cell that borders on a free one is seen, and an outline has four walls at least.
+    // Each cell that borders on a free one is seen, and an outline has at least four walls.
     assert_eq!(exact.is_empty(), occupied == 0);
     assert!(exact.is_empty() || exact.len() >= 4);
     let straight = grid.walls(grid.default_tolerance_m());

@@ -1,22 +1,21 @@
 //! The ring compared with a slow and obvious model of its documented promises.
 //!
-//! The [`Model`] keeps true time in 64 bits, while the ring sees a counter that wraps. It knows for each sensor the
-//! firing under way with the edges handed in since, and the echoes of the firings before. It does not know when the
-//! ring will say something, only what it may say:
+//! The [`Model`] keeps true time in 64 bits, while the ring sees a counter that wraps. For each sensor it knows the
+//! firing in progress with its edges, and the echoes of earlier firings. It does not know when the ring will emit
+//! something, only what it may emit:
 //!
-//! - a firing is of an enabled sensor, and no sooner after the one before than in the schedule; on time if the ring was
+//! - only enabled sensors fire, no sooner after the firing before than in the schedule, and on time if the ring was
 //!   polled on time;
-//! - after a restart or a change of schedule no two sensors fire closer together than the schedule before always keeps
-//!   them;
+//! - after a restart or a change of schedule, no two sensors fire closer together than the previous schedule allowed;
 //! - each firing gives one reading, with the sensor's own phase, period and echo, before that sensor fires again and as
 //!   soon as it is known;
-//! - a late edge gives at most one reading more;
-//! - what is accepted was heard in as many firings running as must agree, and no firings of any sensor explain two of
-//!   them as foreign sound; what is ambiguous is explained by whom it names; when nothing disturbed the comparison,
-//!   nothing else is said;
-//! - a firing that came later than its poll moves all that follow, and its echo times count from then;
-//! - nobody fires while the ring is paused, and what cannot be listened for is refused, nothing else;
-//! - counts, ages and periods go on one by one, and the ring never falls silent.
+//! - a late edge gives at most one more reading;
+//! - accepted echoes were heard in the required number of consecutive firings, and no firings of any sensor explain two
+//!   of them as foreign sound; an ambiguous reading is explained by the sensor that it names; if nothing disturbed the
+//!   comparison, no other kind is possible;
+//! - a firing later than its poll delays all later firings, and its echo times count from the later instant;
+//! - no sensor fires while the ring is paused; impossible listening settings, and only those, are refused;
+//! - counts, ages and periods increase one by one, and the ring never falls silent.
 
 mod model;
 
@@ -32,7 +31,7 @@ pub const SENSORS: usize = 5;
 /// Random input.
 #[derive(Arbitrary, Debug)]
 pub struct Input {
-    /// Reading of the clock at the start; it wraps soon after the larger values.
+    /// Reading of the clock at the start; large values make it wrap soon.
     pub start: u32,
     pub tables: [Table; 2],
     pub t_delta: u16,
@@ -60,14 +59,14 @@ pub enum Step {
     Pass(u16),
     /// Let a minute or two pass.
     PassLong(u8),
-    /// An edge seen this many microseconds ago, which may have come this much sooner; it can be taken back for a while.
+    /// An edge seen this many microseconds ago, which may have come sooner; it can be taken back for a while.
     Edge {
         sensor: u8,
         ago: u16,
         width: u16,
         settles: Option<u16>,
     },
-    /// A value that a module reports of its last firing, see `t_echo_of`.
+    /// A value that a module reports for its last firing; see `t_echo_of`.
     Measured {
         sensor: u8,
         t_echo: u16,
@@ -104,7 +103,7 @@ fn table(table: &Table) -> Option<Schedule<SENSORS>> {
     Schedule::from_firing(Micros::new(period), fire).ok()
 }
 
-/// The nearest time in 64 bits to an instant that is not far from `now`.
+/// The time in 64 bits of an instant that is not far from `now`.
 pub(crate) fn time_of(instant_: Instant, now: u64) -> u64 {
     let ahead = instant_.as_micros().wrapping_sub(now as u32) as i32;
     now.saturating_add_signed(ahead.into())
@@ -225,7 +224,7 @@ pub fn check(input: &Input) {
                 continue;
             }
             Step::Fired(later) => {
-                // Where the last firing came with this poll, and nothing was heard or said of it yet.
+                // Only if the last firing came with this poll, and nothing was heard or reported yet.
                 let Some(x) = model.last_sensor else { continue };
                 if model.last.is_none_or(|last| last.at != now) || !model.lines.sensors[x].is_silent() {
                     continue;
@@ -256,7 +255,7 @@ pub fn check(input: &Input) {
                 let changed = Listening { window, ..model.listening };
                 let done = ring.set_window(window).is_ok();
                 model.listen(done, changed);
-                // What was open may be closed by now.
+                // An open window may be closed by now.
             }
             Step::Blanking(units) => {
                 let blanking = Micros::new(16 * u32::from(*units));

@@ -1,4 +1,4 @@
-//! World files: a world that is written and read again is the same, or the error takes one line.
+//! World files: a world that is written and read back is unchanged, or the error takes one line.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use eeruf_sim::{World, WorldParts};
 
 use crate::one_line;
 
-/// Reads the text. Schedules that it names do not exist.
+/// Reads a text; the schedules that it names do not exist.
 pub fn check(bytes: &[u8]) {
     let Ok(text) = str::from_utf8(bytes) else { return };
     let file = Path::new("/nowhere/world.toml");

@@ -1,4 +1,4 @@
-//! Files of schedules and of rings, even and uneven: the answer keeps its promises, or the error takes one line.
+//! Schedule files and ring files, even and uneven: the result keeps its promises, or the error takes one line.
 
 use eeruf_core::Phase;
 use eeruf_design::RingSpec;
@@ -38,7 +38,7 @@ fn ring(text: &str) {
     match RingSpec::from_text(text) {
         Ok(ring) => {
             assert!((1..=64).contains(&ring.sensors) && ring.window.as_micros() > 0, "{ring:?}");
-            // What must be covered may grow, and never wraps.
+            // Larger values to cover saturate instead of wrapping.
             let more = ring.covering(eeruf_core::Micros::MAX);
             assert!(more.t_delta == eeruf_core::Micros::MAX && more.sensors == ring.sensors);
             assert_eq!(ring.problem().sensors, ring.sensors);

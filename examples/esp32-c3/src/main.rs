@@ -1,4 +1,4 @@
-//! Four HC-SR04 modules on an ESP32-C3, by flow: one task waits for their lines, and reports over USB what each module
+//! Four HC-SR04 modules on an ESP32-C3, by flow: one task waits for their lines and reports over USB what each module
 //! sees.
 #![no_std]
 #![no_main]

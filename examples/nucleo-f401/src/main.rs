@@ -1,5 +1,5 @@
-//! Eight HC-SR04 modules on a Nucleo-F401RE, by flow: one task waits for their lines, and reports through the debugger
-//! on the board what each module sees.
+//! Eight HC-SR04 modules on a Nucleo-F401RE, by flow: one task waits for their lines and reports what each module sees
+//! through the debugger on the board.
 #![no_std]
 #![no_main]
 
@@ -23,8 +23,7 @@ bind_interrupts!(struct Irqs {
     EXTI9_5 => InterruptHandler<typelevel::EXTI9_5>;
 });
 
-/// The pins of modules: a trigger, an echo line, and the interrupt for the number of that line, which no other line may
-/// use.
+/// The pins of modules: a trigger, an echo line, and the interrupt for that line's number, which no other line may use.
 macro_rules! modules {
     ($p:ident: $($trigger:ident $echo:ident $exti:ident),+) => {
         [$(Pins {

@@ -1,5 +1,5 @@
-//! Eight HC-SR04 modules on a Raspberry Pi Pico, one on each state machine of its two PIOs. They fire and time the
-//! echoes by themselves; the main task schedules them, and reports over USB what each module sees.
+//! Eight HC-SR04 modules on a Raspberry Pi Pico, one on each state machine of its two PIOs. These fire and time the
+//! echoes by themselves; the main task schedules them and reports over USB what each module sees.
 #![no_std]
 #![no_main]
 

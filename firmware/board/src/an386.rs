@@ -37,7 +37,7 @@ pub fn start() {
 
 /// Lets a stopped timer run down once.
 pub(crate) fn run_down(timer: usize, ticks: u32) {
-    // Without a reload value it stops then.
+    // Without a reload value it stops at zero.
     Register::at(timer, RELOAD).write(0);
     Register::at(timer, VALUE).write(ticks);
     Register::at(timer, CONTROL).write(0b1001);
@@ -45,6 +45,6 @@ pub(crate) fn run_down(timer: usize, ticks: u32) {
 
 /// Reads a counter proportional to the instructions executed.
 pub fn count() -> u32 {
-    // It counts down.
+    // The counter counts down.
     !Register::at(DUAL_TIMER, 0x4).read()
 }

@@ -1,4 +1,4 @@
-//! Parts that the three Cortex-M boards share.
+//! Common parts of the three Cortex-M boards.
 
 use core::ptr::{read_volatile, write_volatile};
 
@@ -19,7 +19,7 @@ macro_rules! interrupts {
     };
 }
 
-/// A place in the table of interrupt vectors.
+/// An entry of the interrupt vector table.
 #[derive(Clone, Copy)]
 #[repr(C)]
 pub(crate) union Vector {
@@ -90,7 +90,7 @@ pub(crate) fn pend_echo() {
 }
 
 /// Sleeps until the next interrupt, unless `awake` returns true. No interrupt can come between that call and the sleep:
-/// it is held back until the sleep instruction, which then does not sleep.
+/// it stays pending until the sleep instruction, which then returns at once.
 pub fn sleep_unless(awake: impl FnOnce() -> bool) {
     cortex_m::interrupt::disable();
     if !awake() {

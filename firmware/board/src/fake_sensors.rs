@@ -1,7 +1,7 @@
-//! Fake sensors for a board on its own: HC-SR04 modules with a wall in front of each, seen through their pins.
+//! Fake sensors for a board on its own: HC-SR04 modules, each with a wall in front, seen through their pins.
 //!
-//! After a trigger the line of a sensor rises, and falls when the echo is in. Both edges raise the echo interrupt; a
-//! timer of the board makes them.
+//! After a trigger the line of a sensor rises, and falls when the echo arrives. A timer of the board makes both edges,
+//! which raise the echo interrupt.
 
 use core::cell::Cell;
 use core::convert::Infallible;
@@ -12,7 +12,7 @@ use eeruf_hc_sr04::Pins;
 use embedded_hal::delay::DelayNs;
 use embedded_hal::digital::{ErrorType, InputPin, OutputPin};
 
-/// The largest number of sensors, that of the paper.
+/// The largest number of sensors, as in the paper.
 pub const MAX_FAKE_SENSORS: usize = 12;
 
 /// Time from trigger to rise of the line: the burst of an HC-SR04.
@@ -80,8 +80,8 @@ fn trigger(sensor: usize) {
     });
 }
 
-/// Returns the edge that has come, if any, like an interrupt controller. The handler of the echo interrupt calls this
-/// until there is none.
+/// Returns a pending edge, if any, like an interrupt controller. The handler of the echo interrupt calls this until
+/// there is none.
 pub fn edge() -> Option<Edge> {
     let at = crate::now();
     with(|_, sensors| {

@@ -7,11 +7,11 @@
 //! | `an386` | `thumbv7em-none-eabihf` | Cortex-M4F |
 //! | `rv_virt` | `riscv32imac-unknown-none-elf` | RV32IMAC |
 //!
-//! Each module has the same functions: a clock in microseconds, a one-shot alarm that does nothing but end a sleep, a
-//! second timer whose interrupt stands for an edge on an echo line, and a counter for measuring. [`fake_sensors`] plays
-//! the sensors, [`say`] prints through the debugger.
+//! Each module has the same functions: a clock in microseconds, a one-shot alarm that only ends a sleep, a second timer
+//! whose interrupt stands for an edge on an echo line, and a counter for measurements. [`fake_sensors`] simulates the
+//! sensors, [`say`] prints through the debugger.
 //!
-//! A further board takes a file `src/NAME.rs`, a line below, its target and memory in `build.rs`, a runner in
+//! To add a board, write `src/NAME.rs`, add a line below, its target and memory in `build.rs`, a runner in
 //! `firmware/.cargo/config.toml`, and a row of `BOARDS` in `xtask/src/firmware.rs`.
 #![no_std]
 
@@ -48,7 +48,7 @@ pub use riscv_rt::entry;
 /// The reading of the clock at the start.
 static CLOCK_AT_START: AtomicU32 = AtomicU32::new(0);
 
-/// Starts the clock at a reading other than 0, to see it wrap. Call it before the clock is read.
+/// Sets the initial reading of the clock, so that tests see it wrap. Call it before the clock is read.
 pub fn begin_clock_at(start: Instant) {
     CLOCK_AT_START.store(start.as_micros(), Ordering::Relaxed);
 }
@@ -63,8 +63,8 @@ fn instant_of(running: Micros) -> Instant {
 }
 
 /// Proof that an image cannot panic: its panic handler calls a function that does not exist. If any path to a panic is
-/// left after optimisation, the image does not link. Only for release builds, where the optimiser removes what cannot
-/// happen.
+/// left after optimisation, the image does not link. Only for release builds, whose optimiser removes unreachable
+/// paths.
 #[macro_export]
 macro_rules! no_panic {
     () => {

@@ -30,7 +30,7 @@ const CC_1: usize = 0x544;
 
 /// Starts clock and interrupts.
 pub fn start() {
-    // Both at 16 MHz / 2^4.
+    // Both run at 16 MHz / 2^4.
     for timer in [TIMER0, TIMER1] {
         Register::at(timer, BITMODE).write(3);
         Register::at(timer, PRESCALER).write(4);
@@ -44,7 +44,7 @@ pub fn start() {
 }
 
 fn capture(timer: usize) -> u32 {
-    // An interrupt between the two may capture again: the answer is then a little later, never earlier.
+    // An interrupt between these two lines may capture again: the result is then a little later, never earlier.
     Register::at(timer, CAPTURE_1).write(1);
     Register::at(timer, CC_1).read()
 }
@@ -54,10 +54,10 @@ pub(crate) fn running() -> Micros {
     Micros::new(capture(TIMER0))
 }
 
-/// Sets the alarm in place of any other. If `at` has passed, it goes off at once.
+/// Sets the alarm, replacing any other. If `at` has passed, it goes off at once.
 pub fn set_alarm(at: Instant) {
     Register::at(TIMER0, CC_0).write(at.since(crate::instant_of(Micros::ZERO)).as_micros());
-    // The compare register only fires when the counter comes to it.
+    // The compare register only fires when the counter reaches it.
     if crate::now().has_reached(at) {
         pend_alarm();
     }
@@ -68,7 +68,7 @@ pub fn clear_alarm() {
     Register::at(TIMER0, COMPARE_0).write(0);
 }
 
-/// Sets the instant of the next echo interrupt in place of any other. If `at` has passed, it comes at once.
+/// Sets the instant of the next echo interrupt, replacing any other. If `at` has passed, it comes at once.
 pub fn set_echo(at: Instant) {
     let now = crate::now();
     Register::at(TIMER1, STOP).write(1);

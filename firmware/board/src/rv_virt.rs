@@ -75,7 +75,7 @@ impl Timers {
         let mut compare = u64::MAX;
         for at in [self.alarm.get(), self.echo.get()].into_iter().flatten() {
             let wait = if now.has_reached(at) { 0 } else { at.since(now).as_micros() };
-            // From the beginning of this microsecond.
+            // Counted from the beginning of this microsecond.
             compare = compare.min(ticks - ticks % TICKS_PER_US + u64::from(wait) * TICKS_PER_US);
         }
         // SAFETY: the address of the compare register. While it is written its value is never too early.
@@ -87,7 +87,7 @@ impl Timers {
     }
 }
 
-/// Returns true for the alarm and for the echo if they are due, for the handler.
+/// Returns, for the handler, whether the alarm and the echo interrupt are due.
 pub fn due() -> (bool, bool) {
     critical_section::with(|token| {
         let timers = TIMERS.borrow(token);
@@ -105,7 +105,7 @@ pub fn due() -> (bool, bool) {
     })
 }
 
-/// Sets the alarm, and forgets any other. If `at` has passed it goes off at once.
+/// Sets the alarm, replacing any other. If `at` has passed, it goes off at once.
 pub fn set_alarm(at: Instant) {
     critical_section::with(|token| {
         let timers = TIMERS.borrow(token);
@@ -114,10 +114,10 @@ pub fn set_alarm(at: Instant) {
     });
 }
 
-/// Clears the alarm for its handler; here [`due`] has done it.
+/// Clears the alarm for its handler; on this board [`due`] has already done so.
 pub fn clear_alarm() {}
 
-/// Sets the instant of the next echo interrupt, and forgets any other. If `at` has passed it comes at once.
+/// Sets the instant of the next echo interrupt, replacing any other. If `at` has passed, it comes at once.
 pub fn set_echo(at: Instant) {
     critical_section::with(|token| {
         let timers = TIMERS.borrow(token);
@@ -126,7 +126,7 @@ pub fn set_echo(at: Instant) {
     });
 }
 
-/// Clears the echo interrupt for its handler; here [`due`] has done it.
+/// Clears the echo interrupt for its handler; on this board [`due`] has already done so.
 pub fn clear_echo() {}
 
 /// Reads the number of instructions executed.
@@ -135,7 +135,7 @@ pub fn count() -> u32 {
 }
 
 /// Sleeps until the next interrupt, unless `awake` returns true. No interrupt can come between that call and the sleep:
-/// it is held back until the sleep instruction, which then does not sleep.
+/// it stays pending until the sleep instruction, which then returns at once.
 pub fn sleep_unless(awake: impl FnOnce() -> bool) {
     riscv::interrupt::disable();
     if !awake() {

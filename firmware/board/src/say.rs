@@ -1,4 +1,4 @@
-//! Output through the debugger (semihosting), without `core::fmt`, whose formatting can panic and takes kilobytes.
+//! Output through the debugger (semihosting), without `core::fmt`, which can panic and takes kilobytes.
 
 use core::fmt::Write;
 use core::panic::PanicInfo;
@@ -11,7 +11,7 @@ pub trait Say {
 
 impl Say for &str {
     fn say(&self) {
-        // Short pieces, because the debugger wants a zero byte at the end.
+        // In short pieces, because the debugger needs a zero byte at the end.
         let mut piece = [0; 33];
         let mut length = 0;
         for byte in self.bytes() {
@@ -67,7 +67,7 @@ impl Say for i32 {
     }
 }
 
-/// Writes some values one after the other, and ends the line.
+/// Writes some values one after the other and ends the line.
 #[macro_export]
 macro_rules! say {
     ($($what:expr),* $(,)?) => {{

@@ -1,8 +1,8 @@
-//! Parts that the Cortex-M3 and the Cortex-M4 board share: SysTick is the clock, and two timers that run down are the
+//! Common parts of the Cortex-M3 and the Cortex-M4 board: SysTick is the clock, and two timers that run down are the
 //! alarm and the echo lines.
 //!
-//! SysTick has 24 bits and counts down, so the clock is put together from the differences of its readings: it must be
-//! read at least once in each of its turns.
+//! SysTick has 24 bits and counts down, so the clock sums the differences between its readings: it must be read at
+//! least once before each wrap.
 
 use core::cell::Cell;
 
@@ -60,7 +60,7 @@ fn one_shot(timer: usize, at: Instant, pend: fn()) {
     run_down(timer, at.since(now).as_micros().saturating_mul(TIMER_TICKS_PER_US));
 }
 
-/// Sets the alarm, and forgets any other. If `at` has passed it goes off at once.
+/// Sets the alarm, replacing any other. If `at` has passed, it goes off at once.
 pub fn set_alarm(at: Instant) {
     one_shot(ALARM_TIMER, at, pend_alarm);
 }
@@ -70,7 +70,7 @@ pub fn clear_alarm() {
     Register::at(ALARM_TIMER, INTERRUPT_CLEAR).write(1);
 }
 
-/// Sets the instant of the next echo interrupt, and forgets any other. If `at` has passed it comes at once.
+/// Sets the instant of the next echo interrupt, replacing any other. If `at` has passed, it comes at once.
 pub fn set_echo(at: Instant) {
     one_shot(ECHO_TIMER, at, pend_echo);
 }

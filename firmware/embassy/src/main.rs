@@ -1,5 +1,5 @@
 //! The ring of twelve HC-SR04 sensors on embassy. One task sleeps until the ring's next deadline or an echo edge; the
-//! echo interrupt only time-stamps.
+//! echo interrupt only stamps edges.
 #![no_std]
 #![no_main]
 

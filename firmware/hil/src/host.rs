@@ -1,5 +1,5 @@
 //! The host, reached through the debugger's file access: records go to the emulator's standard output, answers come
-//! from its standard input. Emulated time stands still during the wait.
+//! from its standard input. Emulated time stands still while the board waits.
 
 use core::cell::RefCell;
 
@@ -10,7 +10,7 @@ use eeruf_hil::{MOST_AHEAD, Orders, Record};
 use semihosting::fs::File;
 use semihosting::io::{Read, Write};
 
-/// Number of records that are buffered before they are sent.
+/// Number of records buffered before they are sent.
 const KEPT: usize = 64;
 
 /// The host.

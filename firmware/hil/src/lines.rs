@@ -1,4 +1,4 @@
-//! The echo lines, whose edges the host sends ahead of time, and the pins that the driver sees.
+//! The echo lines, whose edges the host sends ahead of time, and the pins for the driver.
 
 use core::cell::RefCell;
 use core::convert::Infallible;
@@ -47,7 +47,7 @@ impl Lines {
         }
     }
 
-    /// Returns the edge that has come, if there is one and its interrupt is not lost.
+    /// Returns a pending edge, if there is one whose interrupt is not lost.
     fn edge(&mut self) -> Option<Edge> {
         let now = eeruf_board::now();
         while self.next < self.count {
@@ -80,8 +80,8 @@ impl Lines {
     }
 }
 
-/// Returns the edge that has come, if any, like an interrupt controller. The handler of the echo interrupt calls this
-/// until there is none.
+/// Returns a pending edge, if any, like an interrupt controller. The handler of the echo interrupt calls this until
+/// there is none.
 pub(crate) fn edge() -> Option<Edge> {
     with(Lines::edge)
 }
@@ -101,7 +101,7 @@ impl OutputPin for Pin<'_> {
         Ok(())
     }
 
-    /// An HC-SR04 measures from the falling edge of its trigger.
+    /// Triggers the module: an HC-SR04 measures from the falling edge of its trigger.
     fn set_low(&mut self) -> Result<(), Infallible> {
         let mut answer = [[[0; 4]; 2]; MOST_AHEAD];
         let answer = self.host.trigger(self.sensor, eeruf_board::now(), &mut answer);

@@ -1,5 +1,5 @@
-//! A ring of eight HC-SR04 sensors whose surroundings are the simulator on the host, in lock step. The main loop is
-//! that of any other ring, and also reports every input and output of the ring to the host.
+//! A ring of eight HC-SR04 sensors, in lock step with a simulator on the host. The main loop is that of any other ring,
+//! but also reports every input and output of the ring to the host.
 #![no_std]
 #![no_main]
 

@@ -37,11 +37,11 @@ pub(crate) fn run<P: Plan, J: Judge, const H: usize, E>(
     let Ok(mut ring) = HcSr04Ring::new(ring, pins, Delay, Settings::default()) else { leave(3) };
     loop {
         loop {
-            // As a driver with a queue does.
+            // Like a driver with a queue.
             let now = eeruf_board::now();
             while let Some(edge) = EDGES.pop() {
                 host.say(Record::edge(edge));
-                // Of a line that the ring has, as all of this board are.
+                // The ring has all lines of this board.
                 _ = ring.edge(edge);
             }
             host.say(Record::poll(now));
@@ -68,12 +68,12 @@ pub(crate) fn run<P: Plan, J: Judge, const H: usize, E>(
         let deadline = ring.next_deadline();
         host.say(Record::deadline(deadline));
         eeruf_board::set_alarm(deadline);
-        // The alarm may have gone off before we sleep, and then wakes nothing.
+        // If the alarm goes off before we sleep, it does not wake us.
         eeruf_board::sleep_unless(|| !EDGES.is_empty() || eeruf_board::now().has_reached(deadline));
     }
 }
 
-/// Delays the main loop, as other work in it might.
+/// Delays the main loop, as other work might.
 fn stall(time: Micros) {
     let end = eeruf_board::now() + time;
     while !eeruf_board::now().has_reached(end) {}

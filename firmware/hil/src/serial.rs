@@ -21,8 +21,8 @@ fn main() -> ! {
         |now| Ring::new(&SCHEDULE, CONFIG, now),
         |event, now, health, edges_lost| {
             if let Some(frame) = recorder.event(event, now, |sensor| health(sensor) as u8, edges_lost) {
-                // The emulated line takes everything at once. On a real one a frame lasts 2 ms, which is a matter for a
-                // queue and an interrupt.
+                // The emulated line takes everything at once. On a real one a frame takes 2 ms, which calls for a queue
+                // and an interrupt.
                 frame.as_bytes().iter().for_each(|&byte| eeruf_board::send(byte));
             }
         },

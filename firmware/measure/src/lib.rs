@@ -1,6 +1,5 @@
-//! Parts that the measured programs share: a schedule of the paper's kind for any number of sensors, and a ring in
-//! static memory behind functions that are not inlined, one for each public function of `Ring`, and a counter of
-//! instructions.
+//! Common parts of the measured programs: a schedule of the paper's kind for any number of sensors, a ring in static
+//! memory behind functions that are not inlined, one for each public function of `Ring`, and a counter of instructions.
 #![no_std]
 
 use core::hint::black_box;
@@ -37,7 +36,7 @@ pub const T_DELTA: Micros = Micros::new(999);
 /// The configuration of all measured rings.
 pub const CONFIG: RingConfig = RingConfig::new().with_window(Micros::from_millis(36));
 
-/// The fewest and the most instructions that one kind of call took.
+/// The fewest and the most instructions of one kind of call.
 #[derive(Debug)]
 pub struct Range {
     name: &'static str,
@@ -77,8 +76,8 @@ pub fn counts<R>(call: impl FnOnce() -> R) -> (u32, R) {
     (eeruf_board::count().wrapping_sub(before) & 0x00FF_FFFF, result)
 }
 
-/// A program with all of `Ring` for `K` sensors in static memory, and nothing else. Its size minus that of the program
-/// `bare` is the size of scheduler and filter.
+/// Makes a program that contains only `Ring` for `K` sensors, in static memory. Its size minus that of the program
+/// `size-bare` is the size of plan and filter.
 #[macro_export]
 macro_rules! ring_in_static_memory {
     ($k:literal) => {
@@ -90,7 +89,7 @@ macro_rules! ring_in_static_memory {
         static SCHEDULE: VerifiedSchedule<$k> = $crate::plain();
 
         struct Memory(UnsafeCell<MaybeUninit<ScheduledRing<'static, $k>>>);
-        // SAFETY: used by `main` alone.
+        // SAFETY: only `main` uses it.
         unsafe impl Sync for Memory {}
         static MEMORY: Memory = Memory(UnsafeCell::new(MaybeUninit::uninit()));
 

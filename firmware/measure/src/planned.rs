@@ -35,8 +35,8 @@ fn moving(ring: &mut FlowRing<12>, speed_mm_s: u32, now: Instant) {
     ring.moving(speed_mm_s, 0, now);
 }
 
-/// Returns the echo time of a sensor, if it hears anything: of 12, four always see a wall, four are fooled in every
-/// second period, three hear noise, and one hears nothing.
+/// Returns the echo time of a sensor, if it hears anything: of twelve sensors, four always see a wall, four hear
+/// crosstalk in every second period, three hear noise, and one hears nothing.
 fn t_echo(sensor: u8, period: u32, noise: u32) -> Option<u32> {
     match sensor {
         0..4 => Some(9_000 + 1_000 * u32::from(sensor)),
@@ -47,13 +47,13 @@ fn t_echo(sensor: u8, period: u32, noise: u32) -> Option<u32> {
     }
 }
 
-/// Instructions of each call, the fewest and the most over 400 rounds in which sensors hear their own echoes,
-/// crosstalk, noise and nothing. In the second half the robot moves at 0.3 m/s.
+/// Counts the instructions of each call: the fewest and the most over 400 rounds in which sensors hear their own
+/// echoes, crosstalk, noise and nothing. In the second half the robot moves at 0.3 m/s.
 ///
-/// Prints one line per kind of call: name, fewest, most; then the mean of all readings. `reading_moving` is a reading
+/// Prints one line per kind of call: name, fewest, most; then the mean over all readings. `reading_moving` is a reading
 /// of the second half; `period_ended` begins the next round.
 pub fn say_calls(ring: &mut FlowRing<12>) {
-    // Whatever the compiler knows of where it lies would count as part of the calls.
+    // Else the compiler's knowledge of its address would change the calls.
     let ring = black_box(ring);
     let mut idle = Range::new("idle_poll");
     let mut fire = Range::new("fire");
@@ -106,8 +106,8 @@ pub fn say_calls(ring: &mut FlowRing<12>) {
     mean.say();
 }
 
-/// Makes a ring like [`ring_in_static_memory!`](crate::ring_in_static_memory), with all of a flow ring, which `made`
-/// makes at compile time and a restart begins.
+/// Makes a program like [`ring_in_static_memory!`](crate::ring_in_static_memory), with a flow ring that `made` makes at
+/// compile time and that a restart begins.
 #[macro_export]
 macro_rules! planned_in_static_memory {
     ($ring:ty, $made:expr) => {
@@ -116,7 +116,7 @@ macro_rules! planned_in_static_memory {
         use eeruf_core::{Instant, RingEvent, SensorError};
 
         struct Memory(UnsafeCell<$ring>);
-        // SAFETY: used by `main` alone.
+        // SAFETY: only `main` uses it.
         unsafe impl Sync for Memory {}
         static MEMORY: Memory = Memory(UnsafeCell::new(match $made {
             Ok(ring) => ring,

@@ -9,7 +9,7 @@ use eeruf_hc_sr04::HcSr04Ring;
 pub type BoardRing<const K: usize, const N: usize> =
     HcSr04Ring<ScheduledRing<'static, K>, Trigger, Echo, Delay, K, &'static EdgeQueue<N>>;
 
-/// Runs a ring on the queue of its edges forever and passes each event to `on_event`.
+/// Runs a ring forever on its queue of edges, and passes each event to `on_event`.
 pub fn run<const K: usize, const N: usize>(
     mut ring: BoardRing<K, N>,
     edges: &'static EdgeQueue<N>,
@@ -21,7 +21,7 @@ pub fn run<const K: usize, const N: usize>(
         }
         let deadline = ring.next_deadline();
         eeruf_board::set_alarm(deadline);
-        // The alarm may have gone off before we sleep, and then wakes nothing.
+        // If the alarm goes off before we sleep, it does not wake us.
         eeruf_board::sleep_unless(|| !edges.is_empty() || eeruf_board::now().has_reached(deadline));
     }
 }

@@ -1,5 +1,5 @@
-//! A ring of twelve HC-SR04 sensors on bare metal. The echo interrupt only takes time stamps; the main loop is the
-//! library's.
+//! A ring of twelve HC-SR04 sensors on bare metal. The echo interrupt only stamps edges; the main loop is in the
+//! library.
 #![no_std]
 #![no_main]
 
@@ -30,7 +30,7 @@ const PERIODS: u32 = 100;
 fn main() -> ! {
     eeruf_board::start();
     for sensor in 0..12 {
-        // Walls 0.9 m to 2.8 m away, and no sensor in place 6.
+        // Walls are 0.9 m to 2.8 m away; sensor 6 is missing.
         fake_sensors::put(sensor, (sensor != 5).then_some(Micros::new(5_000 + 1_000 * sensor as u32)));
     }
     let config = RingConfig::new().with_window(Micros::from_millis(40));

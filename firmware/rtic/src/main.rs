@@ -1,5 +1,5 @@
 //! The ring of twelve HC-SR04 sensors on RTIC 2. The alarm's task owns the ring; the echo interrupt, of higher
-//! priority, only time-stamps and wakes it.
+//! priority, only stamps edges and wakes that task.
 #![no_std]
 #![no_main]
 

@@ -1,4 +1,4 @@
-//! The paper's tables, the shared cases, a ring and a search on the board itself.
+//! Tests of the paper's tables, the shared cases, a ring and a search on the board itself.
 #![no_std]
 #![no_main]
 
@@ -75,7 +75,7 @@ fn every_schedule_of_the_shared_cases_meets_its_requirements() {
     }
 }
 
-/// The example of the proofs, section 7.2.
+/// Tests the example of section 7.2 of the proofs.
 fn three_sensors_have_3912_tables_of_waits() {
     let ms = Micros::from_millis;
     let search = WaitSearch::new(&WaitProblem {
@@ -126,7 +126,7 @@ fn ring_accepts_walls_from_period_two_on_through_a_clock_wrap() {
             }
         }
     }
-    // Every reading but the first of each sensor, and perhaps some of the last period still to come.
+    // All readings but each sensor's first, and perhaps some pending ones of the last period.
     assert_eq!(tally.of(ReadingKind::First), 12);
     assert!(tally.of(ReadingKind::Accepted) >= 39 * 12 - 12 && tally.of(ReadingKind::Rejected) == 0);
 }
@@ -140,7 +140,7 @@ fn readings_that_alternate_as_crosstalk_does_are_all_rejected() {
         let now = ring.next_deadline();
         while let Some(event) = ring.poll(now) {
             match event {
-                // Sound of sensor 1, 20 ms under way, heard by all others.
+                // All others hear the sound of sensor 1 after 20 ms.
                 RingEvent::Fire { sensor, .. } if sensor > 0 => {
                     let at = |x| TABLE_I_D.t_fire(phase, x).map_or(0, Micros::as_micros);
                     let reading = (30_000 + at(0)).wrapping_sub(at(usize::from(sensor)));

@@ -66,12 +66,12 @@ pub(crate) struct Open {
 }
 
 impl Open {
-    /// Returns true if the sensor has a reading that can be emitted, where one echo is enough.
+    /// Returns true if the sensor has a reading that can be emitted, if one echo is enough.
     pub(crate) fn is_ready(&self) -> bool {
         !self.echoes.is_empty() || self.off == WIDE
     }
 
-    /// The kind of a reading without information about an echo; a held line gives none yet.
+    /// The kind of a reading without information about an echo; `None` while the line is held.
     pub(crate) fn unusable(&self, silence: Silence) -> Option<ReadingKind> {
         match self.evidence {
             Evidence::Stuck => Some(ReadingKind::Stuck),
@@ -92,7 +92,7 @@ impl Open {
 
 pub(crate) const WIDE: u32 = 255;
 
-/// An echo: when its sensor fired, after how many microseconds it came, and the possible error.
+/// An echo: the time of its firing, the microseconds until it came, and the possible error.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Echo {
     pub(crate) fired: u64,
@@ -101,7 +101,7 @@ pub(crate) struct Echo {
 }
 
 /// Returns true if these firings explain two echoes as one path that changes by no more than `change`
-/// (docs/explanation/theory.md, 2.1). `own`: they are the receiver's.
+/// (docs/explanation/theory.md, 2.1). `own` is true for the receiver's firings.
 pub(crate) fn explain(fired: &[u64], own: bool, [before, now]: [Echo; 2], audible: u64, change: u64) -> bool {
     let most = u64::from(before.off.max(now.off));
     let (audible, change) = (audible + 2 * most, change + u64::from(before.off + now.off));
@@ -128,11 +128,11 @@ pub(super) struct Listening {
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Sensor {
     pub(crate) open: Option<Open>,
-    /// The last firing whose reading was emitted, and its late edge that was not.
+    /// The last firing whose reading was emitted, and its late edge, which was not.
     pub(crate) emitted: Option<Open>,
     pub(crate) late: Option<u32>,
     pub(crate) had_late: bool,
-    /// True if the sensor held its line then and still does.
+    /// True if the sensor held its line at that reading and still does.
     pub(crate) is_held: bool,
     pub(super) last_fired: Option<Last>,
     /// All instants of firings.
@@ -148,9 +148,9 @@ pub(crate) struct Sensor {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Last {
     pub(super) at: u64,
-    /// Scheduled time, in microseconds from the start of the period with number 0 since the restart.
+    /// Scheduled time, in microseconds since period 0 after the restart began.
     pub(super) planned: u64,
-    /// Number of times that the ring had restarted or changed its schedule.
+    /// Number of restarts and changes of schedule before it.
     pub(super) epoch: u32,
 }
 
@@ -160,7 +160,7 @@ pub(super) struct Model<'s> {
     pub(super) enabled: [bool; SENSORS],
     pub(super) schedule: &'s Schedule<SENSORS>,
     pub(super) next_schedule: Option<&'s Schedule<SENSORS>>,
-    /// Periods since the ring began, and since it restarted or changed.
+    /// Periods since the ring began, and since its last restart or change of schedule.
     pub(super) period: u32,
     pub(super) since: u64,
     pub(super) phase: u8,
@@ -172,7 +172,7 @@ pub(super) struct Model<'s> {
     pub(super) before: Option<&'s Schedule<SENSORS>>,
     /// True if no poll was late since the last firing.
     pub(super) on_time: bool,
-    /// Periods that have ended since something disturbed the comparison.
+    /// Number of periods that have ended since something disturbed the comparison.
     pub(super) quiet_periods: u32,
 }
 
@@ -198,7 +198,7 @@ pub(super) fn always_kept(schedule: &Schedule<SENSORS>, x: usize, y: usize) -> u
 }
 
 impl Sensor {
-    /// Returns true if the sensor has fired and nothing was reported since.
+    /// Returns true if the sensor has fired and nothing was reported since then.
     pub(crate) fn is_silent(&self) -> bool {
         self.open.as_ref().is_some_and(|open| open.echoes.is_empty() && open.early.is_none())
     }
@@ -219,8 +219,8 @@ impl Sensor {
         }
     }
 
-    /// An edge between two instants: the middle counts, unless it may be off by more than 300 us. Returns true if it
-    /// came after the window, which is still open.
+    /// Records an edge between two instants: the middle counts, unless it may be off by more than 300 us. Returns true
+    /// if it came after the window, which is still open.
     pub(crate) fn edge_between(&mut self, earliest: u64, latest: u64, window: Micros, blanking: Micros) -> bool {
         let (width, [first, last]) = (latest - earliest, [blanking, window].map(|us| i64::from(us.as_micros())));
         let (middle, off) = (earliest + width / 2, width - width / 2);
@@ -241,7 +241,7 @@ impl Sensor {
         false
     }
 
-    /// An edge that may be off by this many units. Returns true if it came after the window, which is still open.
+    /// Records an edge that may be off by `off` units. Returns true if it came after the window, which is still open.
     fn edge(&mut self, at: u64, off: u32, window: Micros, blanking: Micros) -> bool {
         let [window, blanking] = [window, blanking].map(|us| u64::from(us.as_micros()));
         if let Some(open) = &mut self.open {
@@ -253,7 +253,7 @@ impl Sensor {
                 return true;
             }
             if t_echo < blanking {
-                // The first to come in, unless an echo was there before.
+                // The first edge, unless an echo came before.
                 if open.early.is_none() && open.echoes.is_empty() {
                     open.early = Some(t_echo as u32);
                 }
@@ -271,7 +271,7 @@ impl Sensor {
         false
     }
 
-    /// Takes back the last echo, if possible: a ring of several echoes then has none.
+    /// Takes back the last echo, if possible; with several echoes a firing all are dropped.
     pub(crate) fn unhear(&mut self, echoes: usize) {
         match &mut self.open {
             Some(open) if open.is_ready() && echoes == 1 => {
@@ -284,13 +284,13 @@ impl Sensor {
     }
 }
 
-/// Reports of drivers.
+/// The state of all lines, as drivers report it.
 pub(crate) struct Lines {
     pub(crate) now: u64,
     pub(crate) sensors: [Sensor; SENSORS],
     /// Counts of readings in this period.
     pub(crate) tally: Tally<u8>,
-    /// Time before which sound that was heard need not be reported.
+    /// Time until which an echo need not be emitted.
     pub(crate) settled: u64,
     pub(crate) silence: Silence,
 }
@@ -337,7 +337,7 @@ impl Lines {
                 let Some((x, fired, least)) = self.echo_of(ring, sensor, t_echo) else { return true };
                 let most = least + u64::from(width);
                 if fired + most > now {
-                    // Reported before it came.
+                    // It would be reported before it came.
                     return true;
                 }
                 let [from, to] = [least, most].map(|us| Micros::new(us as u32));
@@ -367,7 +367,7 @@ impl Lines {
                     self.sensors[usize::from(sensor)].unhear(E);
                 }
             }
-            // Of no account to a judge that is told what to expect.
+            // The judge is told the expected change and ignores this.
             Step::Moving(speed) => ring.moving((speed / 16).into(), (speed % 16).into(), instant(now)),
             Step::PathChange(us) => {
                 assert_eq!(ring.set_path_change(Micros::new(us.into())).is_ok(), us < u16::MAX);
@@ -445,14 +445,14 @@ impl<'s> Model<'s> {
                     "{passed} us after the firing before, {gap} us in the schedule"
                 );
                 if passed > gap {
-                    // By how much is for the ring to judge; to be compared it must have been on time for a while.
+                    // How much is for the ring to judge; comparisons need some time without lateness.
                     self.invalidate();
                 }
             }
             _ => self.invalidate(),
         }
         if let Some(before) = self.before {
-            // What fired under the schedule before.
+            // Firings under the previous schedule.
             for y in 0..SENSORS {
                 let last = self.lines.sensors[y].last_fired.filter(|last| last.epoch + 1 == self.epoch);
                 let kept = match x == y {
@@ -472,8 +472,8 @@ impl<'s> Model<'s> {
         sensor.last_fired = Some(fired);
     }
 
-    /// Returns true if firings of sensor `x` explain two readings of sensor `y`, by a path that may change by `slack`
-    /// more than P and is heard for as much longer.
+    /// Returns true if firings of sensor `x` explain two readings of sensor `y`, along a path that changes by up to P
+    /// plus `slack` and is heard for `slack` longer.
     fn explains(&self, x: usize, y: usize, pair: [Heard; 2], slack: u64) -> bool {
         let echo = |of: Heard| Echo { fired: of.fired, t_echo: of.echo.flatten().unwrap_or(0), off: of.off };
         let [audible, change] =
@@ -481,7 +481,7 @@ impl<'s> Model<'s> {
         explain(&self.lines.sensors[x].fired, x == y, pair.map(echo), audible + slack, change + slack)
     }
 
-    /// Checks a reading, for which odometry expected this change.
+    /// Checks a reading for which odometry expected this change.
     pub(super) fn emitted(&mut self, reading: &Reading, expected: i32) {
         let listening = self.listening;
         let x = usize::from(reading.sensor);
@@ -501,7 +501,7 @@ impl<'s> Model<'s> {
         }
         let open = sensor.open.take().expect("it has fired");
         assert_eq!((reading.phase, reading.period), (Phase(open.phase), open.period));
-        // By another schedule it may fire again before a window that was set since has closed.
+        // Under another schedule it may fire again before a newly set window has closed.
         let changed = sensor.last_fired.is_some_and(|last| last.epoch < self.epoch);
         assert!(
             changed || open.is_ready() || self.lines.now >= open.at + u64::from(listening.window.as_micros()),
@@ -510,7 +510,7 @@ impl<'s> Model<'s> {
         let micros = |us: Option<u32>| us.map(Micros::new);
         let echo = open.echoes.first().copied();
         if open.is_held(self.lines.silence) {
-            // Neither more nor less is known than before.
+            // The reading must leave the knowledge unchanged.
             assert!(matches!(reading.kind, ReadingKind::NoEcho | ReadingKind::Clear), "{reading:?} while it holds");
             assert_eq!((reading.t_echo, reading.previous, reading.age), (None, None, sensor.age));
             if sensor.heard.last().is_some_and(|last| last.echo != Some(None)) {
@@ -551,7 +551,7 @@ impl<'s> Model<'s> {
             (None, Some(_)) if before.is_some() => &[ReadingKind::Rejected, ReadingKind::First],
             (None, Some(_)) => &[ReadingKind::First],
         };
-        // Where nothing disturbed the comparison, the first of them is the one.
+        // If nothing disturbed the comparison, only the first is possible.
         let sure = quiet && sensor.undisturbed > listening.consecutive as u32 + 4;
         let possible = if sure { &possible[..1] } else { possible };
         assert!(possible.contains(&reading.kind), "{reading:?}, possible: {possible:?}; heard {:?}", sensor.heard);
@@ -590,7 +590,7 @@ impl<'s> Model<'s> {
         }
     }
 
-    /// Notes that a sensor has shown that it listened: if its line was held and its reading is out, silence counts now.
+    /// Notes that a sensor has shown that it listened: if its line was held after its reading, silence counts now.
     pub(super) fn answered(&mut self, x: usize) {
         let sensor = &mut self.lines.sensors[x];
         if core::mem::take(&mut sensor.is_held) {
@@ -612,7 +612,7 @@ impl<'s> Model<'s> {
         self.quiet_periods += 1;
         if let Some(next) = self.next_schedule.take() {
             self.new_epoch(next);
-            // It begins with the phase that would have come.
+            // The new schedule begins with the phase that would have come next.
             self.since = u64::from(self.phase);
         }
     }
@@ -626,7 +626,7 @@ impl<'s> Model<'s> {
         self.lines.sensors[x].fired.pop();
         self.lines.sensors[x].fired.push(at);
         if later {
-            // As where a firing is polled late: by how much is for the ring to judge.
+            // Like a firing that is polled late: how much is for the ring to judge.
             self.invalidate();
         }
     }
@@ -642,7 +642,7 @@ impl<'s> Model<'s> {
         }
     }
 
-    /// Notes changed listening settings; the ring must have accepted them exactly if it can.
+    /// Notes changed listening settings, which the ring must accept if and only if it can.
     pub(super) fn listen(&mut self, done: bool, changed: Listening) {
         let Listening { t_delta, window, blanking, .. } = changed;
         let longest =

@@ -1,5 +1,5 @@
-//! Instructions of each call of a flow ring of twelve sensors: see [`say_calls`]. Run it with `-icount shift=10`, like
-//! `instructions`.
+//! Counts the instructions of each call of a flow ring of twelve sensors: see [`say_calls`]. Run it with `-icount
+//! shift=10`, like `instructions`.
 #![no_std]
 #![no_main]
 

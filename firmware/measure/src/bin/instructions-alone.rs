@@ -1,4 +1,4 @@
-//! Like `instructions`, for the plan alone and the filter alone: each is usable without the other.
+//! Counts instructions like `instructions`, for the plan alone and the filter alone, which can be used separately.
 #![no_std]
 #![no_main]
 

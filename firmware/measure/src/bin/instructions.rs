@@ -1,8 +1,8 @@
-//! Instructions of each call of a ring of twelve sensors, the fewest and the most over forty periods on time and forty
-//! in which every firing is late. Run it with `-icount shift=10`: every instruction then takes 1024 ns, and a hardware
-//! timer counts instructions.
+//! Counts the instructions of each call of a ring of twelve sensors: the fewest and the most over forty periods on time
+//! and forty in which every firing is late. Run it with `-icount shift=10`: every instruction then takes 1024 ns, and a
+//! hardware timer counts instructions.
 //!
-//! Prints one line per kind of call: name, fewest, most. Call and return count; reading the timer does not.
+//! Prints one line per kind of call: name, fewest, most. Calls and returns count; reading the timer does not.
 #![no_std]
 #![no_main]
 
@@ -28,7 +28,7 @@ fn echo(ring: &mut ScheduledRing<'static, 12>, sensor: u8, at: Instant) -> Resul
     ring.echo(sensor, at)
 }
 
-/// Stamps and stores an edge, in the interrupt.
+/// Stamps and stores an edge, as in the interrupt.
 #[inline(never)]
 fn stamp(sensor: u8, at: Instant) {
     EDGES.push(Edge { sensor, high: true, at });
@@ -39,7 +39,7 @@ fn main() -> ! {
     eeruf_board::start();
     let start = Instant::from_micros(0);
     let Ok(mut ring) = Ring::new(&PAPER_12, CONFIG, start) else { leave(2) };
-    // Whatever the compiler knows of where it lies would count as part of the calls.
+    // Else the compiler's knowledge of its address would change the calls.
     let ring = black_box(&mut ring);
     let mut idle = Range::new("idle_poll");
     let mut fire = Range::new("fire");
@@ -47,7 +47,7 @@ fn main() -> ! {
     let mut stamped = Range::new("stamp");
     let mut reading = Range::new("reading");
     let mut ended = Range::new("period_ended");
-    // As of period 40 every firing comes late, each by another time.
+    // From period 40 on every firing is late, each by a different time.
     let mut fire_late = Range::new("fire_late");
     let mut reading_late = Range::new("reading_late");
     let mut ended_late = Range::new("period_ended_late");

@@ -1,6 +1,6 @@
-//! Lateness of firings while echoes keep interrupting: twelve sensors, all with an echo, 200 periods. Prints the
-//! lateness of firings, and the resulting shift of crosstalk. Run it at several speeds of the core (`-icount shift=N`:
-//! 2^N ns an instruction).
+//! Measures the lateness of firings under echo interrupts: twelve sensors, all with an echo, 200 periods. Prints the
+//! lateness and the resulting shift of crosstalk. Run it at several speeds of the core (`-icount shift=N`: 2^N ns an
+//! instruction).
 #![no_std]
 #![no_main]
 
@@ -28,7 +28,7 @@ fn echo_interrupt() {
 fn main() -> ! {
     eeruf_board::start();
     for sensor in 0..12 {
-        // All echoes of a group come together, when the next group fires: the worst case.
+        // The worst case: all echoes of a group come together, when the next group fires.
         fake_sensors::put(sensor, Some(Micros::new(24_500)));
     }
     let config = RingConfig::new().with_window(Micros::from_millis(40));

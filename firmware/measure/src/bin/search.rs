@@ -1,6 +1,5 @@
-//! The search of the paper's problem on the board: the table of waits with the largest interval between any four
-//! adjacent sensors of twelve, and the proof that none has a larger one. Prints nodes and
-//! instructions; for `-icount shift=6`.
+//! Searches on the board for the paper's table: the waits with the largest interval between any four adjacent sensors
+//! of twelve, with the proof that none has a larger one. Prints nodes and instructions; run it with `-icount shift=6`.
 #![no_std]
 #![no_main]
 

@@ -1,4 +1,4 @@
-//! Plan and filter for 24 sensors.
+//! Image for measuring the size of plan and filter for 24 sensors.
 #![no_std]
 #![no_main]
 

@@ -1,4 +1,4 @@
-//! Like the programs `size-8`, `size-12`, `size-24`, without the ring.
+//! Baseline for the programs `size-8`, `size-12` and `size-24`: an image without a ring.
 #![no_std]
 #![no_main]
 

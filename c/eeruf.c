@@ -143,7 +143,7 @@ static int32_t shift_of(const EerufSchedule *schedule, uint8_t sensor) {
 }
 
 /* The part of (13a) and (13b) that rejecting all crosstalk needs: the smaller of |d_x - d_y| and |d_x + d_y|. With x =
-   y the second is the shift of a sensor's own echo from the period before. */
+   y the second is the shift of a sensor's own echo from the previous period. */
 static uint32_t moves_by(const EerufSchedule *schedule, uint8_t x, uint8_t y) {
     const int32_t dx = shift_of(schedule, x), dy = shift_of(schedule, y);
     const uint32_t even = (uint32_t)(dx > dy ? dx - dy : dy - dx);
@@ -547,7 +547,7 @@ static IN_LINE void end_late_period(EerufRing *ring, EerufPeriod *ended, uint32_
         EerufSensor *sensor = sensor_of(ring, x);
         if (is_long_ago(sensor->fired_us[0], now_us)) {
             forget_firings(sensor, FIRINGS(flows), now_us);
-            /* The next reading cannot be compared: the instant of its firing before is no longer known. */
+            /* The next reading cannot be compared: the instant of its previous firing is no longer known. */
             forget_readings(ring, x);
             /* No edge can be an echo of them. */
             if (!(sensor->filter.flags & LISTENING))
@@ -1146,7 +1146,7 @@ EerufStatus eeruf_ring_fired(EerufRing *ring, uint8_t x, uint32_t at_us) {
     polled_us = sensor->fired_us[0];
     later_us = at_us - polled_us;
     if (later_us == 0) return EERUF_OK;
-    /* Only to an instant after its previous firing. */
+    /* Ignore an instant that is not after the previous firing. */
     if (FIRINGS(FLOWS(ring)) > 1 && at_us - sensor->fired_us[1] - 1u >= HALF_TURN - 1u) return EERUF_OK;
     sensor->fired_us[0] = at_us;
     /* The reading of a firing that has ended is in the filter. */
@@ -1882,7 +1882,7 @@ static uint32_t least_quiet(const EerufFlowRing *flow) {
     return shorter(reports_every_echo(flow) ? 2 * flow->least_us : flow->least_us, flow->ring.audible_us);
 }
 
-/* The quiet that a sensor needs after its firing, and before it. */
+/* The quiet that a sensor needs before and after its firing. */
 static uint32_t quiet_of(const EerufFlowRing *flow, const EerufFlowSensor *sensor) {
     return longer(sensor->doubt * QUIET_US, least_quiet(flow));
 }
@@ -2218,7 +2218,7 @@ static void give_less_quiet(const EerufFlowRing *flow, EerufFlowSensor *sensor) 
     sensor->doubt = (uint16_t)(sensor->doubt > flow->down + least ? sensor->doubt - flow->down : least);
 }
 
-/* Judges an echo, or silence with a witness, that may have changed by `span_us` since the reading before. */
+/* Judges an echo, or silence with a witness, that may have changed by `span_us` since the previous reading. */
 static void weigh(EerufRing *ring, uint8_t x, uint32_t span_us, EerufReading *reading) {
     EerufFlowRing *flow = flow_of(ring);
     EerufFlowSensor *sensor = flow_sensor(ring, x);

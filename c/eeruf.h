@@ -88,7 +88,7 @@ enum {
     EERUF_ERR_FIRE = -9,         /* a sensor would fire after its period has ended */
     EERUF_ERR_TABLE = -10,       /* a schedule that contradicts itself */
     EERUF_ERR_CROSSTALK = -11,   /* crosstalk would pass: (13a) or (13b) does not hold for this t_delta */
-    EERUF_ERR_STALE_ECHO = -12,  /* a sensor's own echo from the period before would pass */
+    EERUF_ERR_STALE_ECHO = -12,  /* a sensor's own echo from the previous period would pass */
     EERUF_ERR_INTERVAL = -13,    /* two neighbours fire too close together */
     EERUF_ERR_UNVERIFIED = -14,  /* the schedule was not verified */
     EERUF_ERR_T_DELTA = -15,     /* more t_delta than the schedule was verified for */
@@ -158,7 +158,7 @@ typedef struct EerufSchedule {
     uint8_t verified;
     uint8_t layout;         /* EERUF_LAYOUT_.. */
     uint8_t neighbours;
-    uint8_t stale_echo;     /* true if a sensor's own echo from the period before is rejected too */
+    uint8_t stale_echo;     /* true if a sensor's own echo from the previous period is rejected too */
     const EerufLimits *limits; /* one for each sensor if they differ; else null */
 } EerufSchedule;
 
@@ -527,7 +527,7 @@ uint8_t eeruf_hc_sr04_health(const EerufHcSr04 *modules, uint8_t sensor);
 
 /* ---- Flow: one sensor after the other, each with as much quiet around its firing as it has needed ----
 
-   A sensor fires when earlier sensors and it have had the quiet that they need, plus a random time; distant sensors
+   A sensor fires a random time after the quiet that it and the sensors before it need; distant sensors
    alternate. A reading is accepted if it fits the belief about its sensor, or if it agrees with the one before and no
    firing explains both as foreign sound. Late polls cost only time. docs/explanation/flow.md has the rules. */
 

@@ -36,7 +36,7 @@ fn near(t_delta: u16, echo: u32, previous: u32, expected: i32) -> bool {
 }
 
 /// Returns the length of the longest run of firings that ends with `echo` in the last one, in which each firing has an
-/// echo near-identical to one of the firing before.
+/// echo near-identical to one of the previous firing.
 fn run(t_delta: u16, firings: &[Heard], echo: u32) -> usize {
     let [before @ .., last] = firings else { return 0 };
     let previous = before.last().map_or(&[][..], |heard| &heard.echoes);

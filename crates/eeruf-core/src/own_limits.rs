@@ -90,8 +90,8 @@ impl OwnLimits for () {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct EachSensor<const K: usize> {
-    /// The largest `t_delta` and window, and a separation with the smallest margin over `t_delta` of any pair; `None`
-    /// if all sensors are alike.
+    /// The largest `t_delta` and window, and the separation of the pair with the smallest margin over its `t_delta`;
+    /// `None` if all sensors are alike.
     most: Option<VerifiedFor>,
     limits: [SensorLimits; K],
     /// The group that each sensor fires together with, from 1; 0 for none.
@@ -291,7 +291,7 @@ impl<const K: usize> OwnLimits for &EachSensor<K> {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(crate) struct InUse<U> {
     now: U,
-    /// Limits of the period before, in which sensors may still be listening.
+    /// Limits of the previous period, whose firings may still be listened for.
     before: U,
     /// Limits of the next period; those of the present one unless another schedule begins then.
     next: U,

@@ -15,11 +15,11 @@ use crate::time::Micros;
 pub enum ReadingKind {
     /// An echo with nothing to compare it with: at the start, or after a firing without echo.
     First,
-    /// Near-identical to the reading before (Eq. 11), as many times in a row as the filter requires.
+    /// Near-identical to the previous reading (Eq. 11), as many times in a row as the filter requires.
     Accepted,
-    /// Not near-identical to the reading before: crosstalk, noise, or an object that moved too fast.
+    /// Not near-identical to the previous reading: crosstalk, noise, or an object that moved too fast.
     Rejected,
-    /// Near-identical to the reading before, but not yet often enough; only if more than two readings are compared.
+    /// Near-identical to the previous reading, but not yet often enough; only if more than two readings are compared.
     Repeated,
     /// No echo within the window, once; or repeatedly, if nothing shows that the sensor listened
     /// ([`Silence::NeverFree`](crate::Silence)).
@@ -36,7 +36,7 @@ pub enum ReadingKind {
     /// An echo nearer than the confirmed one, with little support so far but no contradiction: slow down for it. Only a
     /// judge of your own returns it.
     Tentative,
-    /// Near-identical to the reading before, but sound of another firing explains both: [`Explanation`] names that
+    /// Near-identical to the previous reading, but sound of another firing explains both: [`Explanation`] names that
     /// firing. Only a [`Ring`](crate::Ring) returns it.
     Ambiguous,
     /// No evidence at all: neither an echo nor a witness that the sensor listened

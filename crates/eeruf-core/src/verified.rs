@@ -84,11 +84,11 @@ impl<const K: usize, const M: usize, L> serde::Serialize for VerifiedSchedule<K,
 }
 
 impl<const K: usize> Schedule<K> {
-    /// The schedule with the proof that it meets the requirements. If sensors differ, it has the smallest `t_delta` and
+    /// Verifies the schedule, and returns it with that proof. If sensors differ, it has the smallest `t_delta` and
     /// window for all; [`verified_each`](Self::verified_each) keeps each sensor's own.
     ///
     /// # Errors
-    /// The first [`Violation`] if it does not.
+    /// The first [`Violation`] if the requirements are not met.
     ///
     /// ```
     /// use eeruf_core::{Micros, Requirements, tables::TABLE_I_D};
@@ -142,10 +142,10 @@ impl<const K: usize> Schedule<K> {
         Ok(VerifiedSchedule { schedule: schedule.with_verified_for(verified_for), own_limits: () })
     }
 
-    /// The schedule with the proof that it meets the requirements, and the limits of each sensor.
+    /// Verifies the schedule, and returns it with that proof and the limits of each sensor.
     ///
     /// # Errors
-    /// The first [`Violation`] if it does not.
+    /// The first [`Violation`] if the requirements are not met.
     pub const fn verified_each(
         &self,
         requirements: &Requirements<'_>,

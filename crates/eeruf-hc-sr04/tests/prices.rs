@@ -126,7 +126,7 @@ fn room<P: Plan, J: Judge, const H: usize>(
     seen.first_clear = clears.fold(seen.first_clear, u32::max);
 }
 
-/// Percentages of firings that are judged correctly, with and without a wall, and the latest first `clear`.
+/// Percentages of firings judged correctly, with and without a wall; and the firings until all had been clear.
 fn shares(rooms: u64, is_open: bool, holds: u64, flow: bool) -> [f64; 3] {
     let mut seen = Seen::default();
     let (begin, config) = (Instant::from_micros(0), RingConfig::new().with_window(WINDOW));

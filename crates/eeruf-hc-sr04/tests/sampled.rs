@@ -1,5 +1,5 @@
-//! A loop that samples its lines and has other work: edges are known to lie between two looks, and distances that late
-//! looks make wrong are not accepted.
+//! A loop that samples its lines and has other work: edges are known to lie between two looks, and wrong distances from
+//! late looks are not accepted.
 
 #[path = "shared/pins.rs"]
 mod pins;

@@ -44,7 +44,7 @@ pub(crate) trait Lines {
 /// Speeds of the robot, in mm/s and mrad/s.
 pub(crate) type Speeds = [u32; 2];
 
-/// The firing of a file's ring, and the needs of its modules.
+/// The ring of a ring file: the way it fires, and the settings of its modules.
 pub(crate) struct GpioRing {
     way: Way,
     settings: Settings,
@@ -176,7 +176,7 @@ fn instant(us: u64) -> Instant {
     Instant::from_micros(us as u32)
 }
 
-/// The state of the ring as far as it is known.
+/// The known state of the ring.
 struct Known {
     sequence: u16,
     fired: [(Instant, Micros); MAX_SENSORS],

@@ -82,7 +82,7 @@ impl<const K: usize, const E: usize> EchoFilter<K, E> {
     }
 
     /// Judges like [`push`](Self::push), with all echoes of the firing in any order (the earliest `E` count) and the
-    /// change in microseconds that a good reading is expected to show since the firing before: `-2 v dt / c` for an
+    /// change in microseconds that a good reading is expected to show since the previous firing: `-2 v dt / c` for an
     /// object approached at `v`, where `dt` is the time between the two firings (see
     /// [`Schedule::refire_after`](crate::Schedule::refire_after)). The filter does not know what was fired: with an
     /// expected change it accepts crosstalk under any schedule. [`Ring::poll_expecting`](crate::Ring::poll_expecting)

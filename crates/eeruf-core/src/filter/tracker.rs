@@ -1,4 +1,4 @@
-//! [`Tracker`]: compares the echoes of one firing with those of the firing before, and classifies the reading.
+//! [`Tracker`]: compares the echoes of one firing with those of the previous firing, and classifies the reading.
 
 use super::agreement::{Consecutive, Tolerance};
 use super::echoes::{NO_ECHO, echo_time, shift};
@@ -13,7 +13,7 @@ const NEVER: u16 = u16::MAX;
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(crate) struct Tracker<const E: usize> {
-    /// The echoes of the firing before, earliest first; [`NO_ECHO`] means silence if its run is not zero.
+    /// The echoes of the previous firing, earliest first; [`NO_ECHO`] means silence if its run is not zero.
     known: [Micros; E],
     /// For each known echo, the number of consecutive readings that contained it, capped at the number that must agree;
     /// 0 for none.
@@ -43,9 +43,9 @@ impl<const E: usize> Tracker<E> {
         self.verdict(kind, t_echo, None, None)
     }
 
-    /// Compares the echoes of one firing, earliest first, with those of the firing before. `explanation` is asked about
-    /// each pair of near-identical echoes, the earlier firing's first: a pair that foreign sound explains does not
-    /// count, and its echo starts a new run.
+    /// Compares the echoes of one firing, earliest first, with those of the previous firing. `explanation` is asked
+    /// about each pair of near-identical echoes, the earlier firing's first: a pair that foreign sound explains does
+    /// not count, and its echo starts a new run.
     pub(crate) fn push(
         &mut self,
         tolerance: Tolerance,

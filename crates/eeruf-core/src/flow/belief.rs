@@ -140,7 +140,7 @@ impl<const E: usize> Known<E> {
         self.believes() && is_kept && time.abs_diff(self.believed) <= most
     }
 
-    /// Returns the explanation of an echo that agrees with one of the reading before; `None` if no echo agrees.
+    /// Returns the explanation of an echo that agrees with one of the previous reading; `None` if no echo agrees.
     fn twice(&self, time: Micros, span: Micros, t_delta: Micros, sounds: &impl Sounds) -> Option<Explained> {
         let (mut explained, most) = (None, t_delta.saturating_add(span));
         for &last in self.last.iter().filter(|&&last| last < SILENCE && time.abs_diff(last) <= most) {

@@ -8,8 +8,7 @@ const AUDIBLE: Micros = Micros::from_millis(250);
 const SILENCE: Micros = Micros::from_millis(500);
 /// The longest time over which a change is computed; older beliefs are dropped.
 const LONGEST: u32 = (1 << 20) - 1;
-/// Divisor of a metre that gives the assumed distance of a sensor from the robot's centre of rotation, 0.5 m, at which
-/// a turn moves it.
+/// Assumed distance of a sensor from the robot's centre of rotation, as the divisor of a metre: 1/2 m.
 const PART_OF_A_METRE: u32 = 2;
 
 /// Change of an echo for a moving robot, in 1/16 us per 1,024 us.

@@ -80,7 +80,7 @@ pub struct InTurn<const K: usize, U = ()> {
     thrown: Micros,
     random: u32,
     window: Micros,
-    /// Least quiet, for a robot that stands still or is near others, and greatest quiet.
+    /// Least quiet, doubled while every echo is reported; and greatest quiet.
     least: Micros,
     most: Micros,
     rest: Micros,

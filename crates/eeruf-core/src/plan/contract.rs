@@ -14,7 +14,7 @@ use crate::time::{Instant, Micros};
 pub struct Upcoming {
     /// The sensor, from 0.
     pub sensor: u8,
-    /// The phase of the firing's wait.
+    /// The phase whose wait applies to the firing.
     pub phase: Phase,
     /// Time when the firing is due.
     pub due: Instant,
@@ -67,8 +67,8 @@ pub trait Plan {
     }
     /// Fires the next sensor, at `now`. Call it when the firing is due.
     fn fire(&mut self, now: Instant);
-    /// Notes that a sensor fired this much later than [`fire`](Self::fire) was called for: all that depends on its
-    /// firing moves by as much, and no interval to come gets shorter.
+    /// Postpones a sensor's firing, which happened later than the call of [`fire`](Self::fire): everything that depends
+    /// on it moves by as much, and no later interval gets shorter.
     fn postpone(&mut self, sensor: u8, by: Micros);
     /// Ends the period at `now` and returns its phase. The flag is true if the next period does not follow as
     /// scheduled, because another schedule begins or periods were skipped. Call it when the end is due.

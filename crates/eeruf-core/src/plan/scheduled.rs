@@ -26,7 +26,7 @@ use crate::verified::VerifiedSchedule;
 /// ```
 ///
 /// If sensors have limits of their own, each uses those that it was verified for; in the first period after a change of
-/// schedules, the lesser of both.
+/// schedule, the lesser of the two.
 pub type ScheduledFiring<'s, const K: usize, const M: usize = 2, U = ()> = TableFiring<&'s Schedule<K, M>, K, M, U>;
 
 /// [`ScheduledFiring`] with any pointer `T` to a [`Schedule`]: with `&Schedule` it borrows, with an `Arc` it owns, so
@@ -135,8 +135,8 @@ impl<T: Deref<Target = Schedule<K, M>>, const K: usize, const M: usize, U: OwnLi
         self.own_limits.change(own_limits);
     }
 
-    /// Moves on to the following sensor, whose gap counts from this instant, or to the next enabled one after it; if
-    /// there is none, to the end of the period.
+    /// Moves on to the next enabled sensor or, if there is none, to the end of the period. Gaps count from this
+    /// instant.
     #[inline]
     fn turn(&mut self, from: Instant) {
         self.due = from;

@@ -12,7 +12,7 @@ pub enum RingEvent {
     Fire {
         /// The sensor, from 0.
         sensor: u8,
-        /// The phase of the firing's wait.
+        /// The phase whose wait applies to the firing.
         phase: Phase,
         /// Time when the firing was due: in the past if the poll was late.
         due: Instant,
@@ -46,7 +46,7 @@ pub struct Reading {
     pub explained_by: Option<Explanation>,
 }
 
-/// Statistics of one period, counted since the end of the period before.
+/// Statistics of one period, counted since the end of the previous period.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct PeriodStats {

@@ -77,7 +77,7 @@ impl<const H: usize> Firings<H> {
         self.0.get(1).map_or(Micros::MAX, |&before| self.last().since(before))
     }
 
-    /// Returns true if sound of any firing except the latest `but` is audible at an instant.
+    /// Returns true if sound of any firing, except the latest `but` ones, is audible at an instant.
     pub(super) fn is_heard_at(&self, at: Instant, audible: Micros, but: usize) -> bool {
         for &fired in self.0.iter().skip(but) {
             if at.has_reached(fired) {

@@ -478,9 +478,8 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         Ok(())
     }
 
-    /// Reports the result of a sensor's last firing that hardware or a protocol measured, before its reading is
-    /// emitted: the echo time, or `None` if it listened and heard nothing. See
-    /// [`set_report_after`](Self::set_report_after).
+    /// Reports a sensor's last result, measured by hardware or read over a protocol, before its reading is emitted: the
+    /// echo time, or `None` if it listened and heard nothing. See [`set_report_after`](Self::set_report_after).
     ///
     /// # Errors
     /// [`SensorError`] for a sensor out of range.

@@ -38,7 +38,7 @@ const OUTSIDE: u8 = 1 << 5;
 // Two bits of evidence: neither is set once it is complete.
 /// The driver found the line stuck.
 pub(super) const STUCK: u8 = 1 << 6;
-/// Nothing has shown yet that the sensor listens: its silence says nothing.
+/// Nothing has shown yet that the sensor listens: its silence means nothing.
 pub(super) const UNANSWERED: u8 = 1 << 7;
 /// The sensor holds its line: silence counts once the line has fallen. The flag outlasts the reading.
 pub(super) const HELD: u8 = STUCK | UNANSWERED;

@@ -106,7 +106,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         let sensors = self.plan.sensors();
         for (x, sensor) in (0..).zip(self.sensors.iter_mut().take(sensors)) {
             if sensor.expire(now) {
-                // Its next reading cannot be compared: the instant of its firing before is no longer known.
+                // Its next reading cannot be compared: the instant of its previous firing is no longer known.
                 self.judge.forget(x);
             }
         }

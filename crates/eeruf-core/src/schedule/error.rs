@@ -61,7 +61,7 @@ pub enum ScheduleError {
         rung: usize,
         /// The period.
         period: Micros,
-        /// The period of the rung before.
+        /// The period of the previous rung.
         before: Micros,
     },
     /// A rung of a ladder does not have as many sensors as the first.

@@ -17,7 +17,7 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// Progress of a search outside this crate: nodes, the best value so far and its bound.
+    /// Makes the progress of a search in another crate: nodes, the best value so far and its bound.
     pub const fn new(nodes: u64, best: Option<u32>, bound: Option<u32>) -> Self {
         Self { nodes, best, bound }
     }

@@ -14,7 +14,7 @@ fn ms(ms: u32) -> Micros {
     Micros::from_millis(ms)
 }
 
-/// Settings for which the schedules in milliseconds are verified.
+/// Settings that all schedules in milliseconds are verified for.
 const CONFIG: RingConfig = RingConfig::new().with_t_delta(Micros::from_millis(1)).with_window(Micros::from_millis(5));
 
 /// A schedule of firing times in milliseconds, verified for this interval between all its sensors.

@@ -78,7 +78,7 @@ impl<P: Plan, J: Judge, C: Captures, const K: usize, const H: usize> CaptureRing
         self.count == 0 && self.ring.upcoming().nth(1).is_none()
     }
 
-    /// Hands to the hardware the firings that are due soon.
+    /// Hands firings that are due soon to the hardware.
     fn arm(&mut self, now: Instant) {
         while !self.is_held && !self.is_late {
             let Some(next) = self.ring.upcoming().nth(self.count) else { return };

@@ -86,7 +86,7 @@ impl Enumeration<'_> {
         in_range && self.is_separate(k) && self.in_time(k, 0) && self.in_time(k, 1)
     }
 
-    /// Moves sensor `k` to its next pair of waits, the present one included, that fits the sensors before it.
+    /// Moves sensor `k` to the first pair of waits, from the present one on, that fits the sensors before it.
     fn seek(&mut self, k: usize) -> bool {
         let wait_max = self.problem.wait_max;
         while self.a[k] <= wait_max {

@@ -1,4 +1,4 @@
-//! `tests/data/wait-tables.json` as types.
+//! Types for reading `tests/data/wait-tables.json`.
 
 use serde::Deserialize;
 use std::collections::BTreeMap;

@@ -21,7 +21,7 @@ impl Dice {
     }
 }
 
-/// A ring of HC-SR04 modules in true time, a clock that does not wrap.
+/// A ring of HC-SR04 modules in true time, which does not wrap.
 pub(super) struct World<P = InTurn<24>, const E: usize = 1> {
     pub(super) ring: Ring<P, Belief<24, E>, 24, E, 3>,
     begin: u32,

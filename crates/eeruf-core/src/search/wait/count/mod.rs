@@ -1,13 +1,13 @@
 //! Number of tables: depth first over the sensors, with earlier counts kept in memory.
 //!
-//! Little about the sensors already placed matters to those still to come: which `|d|` (and `s`) are still free, and
-//! which waits remain to each sensor that conflicts with one of them. Two partial tables that leave the same remainder
-//! have the same number of completions, so it is counted once and kept. The last sensor is not visited pair by pair:
-//! for each free `|d|` the waits left to it are the common bits of three words.
+//! Only part of a partial table matters to the sensors not yet placed: which `|d|` (and `s`) are still free, and which
+//! waits are left for each sensor that conflicts with a placed one. Two partial tables with the same remainder have the
+//! same number of completions, so each remainder is counted once. The last sensor is not visited pair by pair: for each
+//! free `|d|` its remaining waits are the common bits of three words.
 //!
-//! The memory lent holds only remainders. It is compared word by word, never by a hash alone, so any amount gives the
-//! exact count, even none; when it is full, older entries give way. Exchanging the phases changes neither `|d|` nor
-//! `s`, so a remainder and its exchange share one entry.
+//! The memory lent holds only remainders, which are compared word by word, not only by hash. So any amount of memory
+//! gives the exact count, even none; when it is full, older entries give way. Exchanging the phases changes neither
+//! `|d|` nor `s`, so a remainder and its exchange share one entry.
 //!
 //! Waits above 63 ticks do not fit the words; such problems are counted one table at a time.
 

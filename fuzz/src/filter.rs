@@ -3,7 +3,7 @@
 use arbitrary::Arbitrary;
 use eeruf_core::{EchoFilter, Micros, ReadingKind};
 
-/// Largest number of echoes a firing in this test.
+/// Largest number of echoes per firing in this test.
 const ECHOES: usize = 3;
 
 /// Random input.

@@ -40,7 +40,7 @@ pub struct Input {
 #[derive(Arbitrary, Debug)]
 pub enum Kind {
     Plain,
-    /// Rings with up to three echoes a firing.
+    /// Rings with up to three echoes per firing.
     Echoes,
     /// Rings in which some sensors fire together and some share an echo line.
     Uneven {

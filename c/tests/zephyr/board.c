@@ -23,7 +23,7 @@
 #define MODULES 8
 #define NEVER UINT64_MAX
 
-/* Walls before the modules, in mm. CUT has no power, OPEN hears nothing at all, LOUD has no wall and hears both of its
+/* Walls of the modules, in mm. CUT has no power, OPEN hears nothing at all, LOUD has no wall and hears both of its
  * neighbours. The line of STICKS sticks high for two seconds at a random time in every six. */
 enum { CUT = 2, OPEN = 5, STICKS = 6, LOUD = 7 };
 static const unsigned walls_mm[MODULES] = {500, 700, 600, 1500, 2000, 0, 900, 0};

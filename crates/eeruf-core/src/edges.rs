@@ -99,7 +99,7 @@ impl<const N: usize> EdgeQueue<N> {
     }
 
     /// Number of edges lost because the queue was full. The count wraps at 256 instead of stopping: read it at least
-    /// once a period, and take the difference.
+    /// once per period, and take the difference.
     pub fn lost(&self) -> u8 {
         self.lost.load(Ordering::Relaxed)
     }

@@ -141,8 +141,8 @@ impl Requirements<'_> {
 pub struct Least {
     /// The shift, with two phases the smaller left side of (13a) and (13b); or the interval.
     pub value: Micros,
-    /// The sensors, from 0. For a shift, the sender and the receiver, with two phases the smaller number first; for an
-    /// interval, ascending within a period, in firing order across a period's end.
+    /// The sensors, from 0: for a shift the sender and the receiver (with two phases, the smaller number first); for an
+    /// interval in ascending order within a period, and in firing order across its end.
     pub sensors: (u8, u8),
     /// The two phases in which the sound is heard (both `a` with two phases), or in which the two sensors fire.
     pub phases: (Phase, Phase),
@@ -201,7 +201,7 @@ impl<const K: usize, const M: usize> Schedule<K, M> {
     }
 }
 
-/// The shorter of two intervals, if there are two.
+/// The shorter of two intervals; `next` if there is no other.
 pub(crate) const fn shorter(least: Option<Least>, next: Least) -> Option<Least> {
     match least {
         Some(least) if least.value.as_micros() <= next.value.as_micros() => Some(least),

@@ -6,7 +6,7 @@ use crate::sensor_error::SensorError;
 use crate::time::{Instant, Micros};
 
 /// Watches the events of a ring of up to `K` sensors: it tracks what is known of the space in front of each, and
-/// reports sensors whose echoes are never accepted. It takes 16 bytes a sensor, plus eight.
+/// reports sensors whose echoes are never accepted. It takes 16 bytes per sensor, plus eight.
 ///
 /// ```
 /// use eeruf_core::{

@@ -38,8 +38,8 @@ impl Pace {
         }
     }
 
-    /// Returns true, about once a second, if the loop is too slow: in that second a sensor had no two punctual readings
-    /// in a row, or a table's firings were more than a millisecond late, which makes readings ambiguous.
+    /// Returns true, about once per second, if the loop is too slow: in that second a sensor had no two punctual
+    /// readings in a row, or a table's firings were more than a millisecond late, which makes readings ambiguous.
     pub fn too_slow<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize>(
         &mut self,
         ring: &Ring<P, J, K, E, H>,

@@ -196,7 +196,7 @@ impl Record {
                 Self::new(Topic::Event, sensor, 2, [kind, period, us(t_echo), us(previous), age])
             }
             Some(RingEvent::PeriodEnded(stats)) => {
-                // Five bits for each count, of about eight readings a period.
+                // Five bits for each count, of about eight readings per period.
                 let counts = eeruf_core::ReadingKind::ALL.iter();
                 let counts = counts.fold(0_u64, |sum, &kind| (sum << 5) + u64::from(stats.tally.of(kind)));
                 let [low, high] = [counts as u32, (counts >> 32) as u32];

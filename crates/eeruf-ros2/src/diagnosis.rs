@@ -1,5 +1,5 @@
-//! Faults of each sensor, of the line and of the timing, which `diagnostic_msgs/DiagnosticArray` reports once a second.
-//! Times are in seconds of any one clock.
+//! Faults of each sensor, of the line and of the timing, which `diagnostic_msgs/DiagnosticArray` reports once per
+//! second. Times are in seconds of any one clock.
 
 use eeruf_core::{
     Instant, MAX_SENSORS, Micros, PeriodStats, Phase, Reading, ReadingKind, RingEvent, Tally,

@@ -349,7 +349,7 @@ mod tests {
 
     type OfSensor = Vec<(ReadingKind, Option<Micros>)>;
 
-    /// The readings of 40 periods by sensor, and the health at the end. The ring gets the speeds once a period.
+    /// The readings of 40 periods by sensor, and the health at the end. The ring gets the speeds once per period.
     fn read(
         start_us: u64,
         (ring, method): (&str, &str),

@@ -177,7 +177,7 @@ impl Mavlink {
         self.unanswered_as == UnansweredAs::Hold && !self.armed && self.failed.contains(&true)
     }
 
-    /// Sends a heartbeat and the sensors' status, once a second.
+    /// Sends a heartbeat and the sensors' status, once per second.
     pub(crate) fn heartbeat(&mut self) -> std::io::Result<()> {
         self.listen();
         let is_well = !self.failed.contains(&true);

@@ -9,7 +9,7 @@ use crate::firing::FiringMessage;
 const GREET_EVERY: u8 = 128;
 
 /// Follows the events of a ring of up to `K` sensors and makes a frame of each reading and each period's end. It takes
-/// eight bytes a sensor. `K` is 1 to 64, or [`new`](Self::new) does not compile.
+/// eight bytes per sensor. `K` is 1 to 64, or [`new`](Self::new) does not compile.
 ///
 /// ```compile_fail
 /// let recorder = eeruf_serial::Recorder::<65>::new("a timer");

@@ -52,7 +52,7 @@ trait Fifos {
 
 impl<P: Instance, const N: usize> Fifos for StateMachine<'_, P, N> {
     fn push(&mut self, word: u32) {
-        // It takes two words a firing, and has room for four.
+        // It takes two words per firing, and has room for four.
         self.tx().push(word);
     }
 

@@ -271,7 +271,7 @@ impl Sensor {
         false
     }
 
-    /// Takes back the last echo, if possible; with several echoes a firing all are dropped.
+    /// Takes back the last echo, if possible; with several echoes per firing all are dropped.
     pub(crate) fn unhear(&mut self, echoes: usize) {
         match &mut self.open {
             Some(open) if open.is_ready() && echoes == 1 => {

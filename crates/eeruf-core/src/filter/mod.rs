@@ -32,7 +32,7 @@ pub(crate) use echoes::{NO_ECHO, SILENCE, heard, insert, shift};
 pub use median::MedianFilter;
 use tracker::Tracker;
 
-/// Compares the consecutive readings of up to `K` sensors, each with up to `E` echoes a firing.
+/// Compares the consecutive readings of up to `K` sensors, each with up to `E` echoes per firing.
 ///
 /// ```
 /// use eeruf_core::{EchoFilter, ReadingKind, Micros};

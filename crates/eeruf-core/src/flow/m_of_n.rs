@@ -35,7 +35,7 @@ impl Vote {
     }
 }
 
-/// A sensor's state: 12 bytes a reading, plus six.
+/// A sensor's state: 12 bytes per reading, plus six.
 #[derive(Clone, Copy, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 struct Known<const N: usize> {

@@ -24,9 +24,9 @@ pub use belief::Belief;
 pub use plan::InTurn;
 pub use settings::{BeliefSettings, TurnSettings, Votes};
 
-/// A ring of up to `K` sensors that fires in turn, with up to `E` echoes a firing. It remembers the last three firings
-/// of each sensor: fewer are too few, more add nothing. `U` is [`EachSensor`](crate::EachSensor), or a reference to
-/// one, if sensors have limits of their own.
+/// A ring of up to `K` sensors that fires in turn, with up to `E` echoes per firing. It remembers the last three
+/// firings of each sensor: fewer are too few, more add nothing. `U` is [`EachSensor`](crate::EachSensor), or a
+/// reference to one, if sensors have limits of their own.
 pub type FlowRing<const K: usize, const E: usize = 1, U = ()> = Ring<InTurn<K, U>, Belief<K, E>, K, E, 3>;
 
 impl<const K: usize, const E: usize> FlowRing<K, E> {

@@ -18,8 +18,8 @@ pub(super) struct Rate(u16);
 
 impl Rate {
     pub(super) const STANDING: Self = Self(0);
-    /// The rate at a speed `v` in mm/s, rounded up: `2 v / 331 * 1.024 * 16 * 1.06`, at most 4,095. Sound is never
-    /// slower than 331 m/s where robots are. The 6 % are for intervals between sendings, which at 3.6 m/s exceed those
+    /// The rate at a speed `v` in mm/s, rounded up: `2 v / 331 * 1.024 * 16 * 1.06`, at most 4,095. Robots meet no
+    /// sound slower than 331 m/s. The extra 6 % covers intervals between sendings, which at 3.6 m/s exceed those
     /// between hearings by that much.
     const fn of(speed_mm_s: u32) -> Self {
         // A Cortex-M0 divides by a power of two without a call.

@@ -181,7 +181,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     }
 
     /// Stops all sensors from firing until [`resume`](Self::resume). Readings of firings under way are still emitted;
-    /// periods go on, so that a deadline still comes once a period. For a longer sleep do not poll, and
+    /// periods go on, so that a deadline still comes once per period. For a longer sleep do not poll, and
     /// [`restart`](Self::restart) after it.
     pub fn pause(&mut self) {
         self.plan.set_paused(true);

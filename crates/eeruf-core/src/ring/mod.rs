@@ -616,8 +616,8 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         &self.judge
     }
 
-    /// Reports how fast the robot moves and turns; call it once a control cycle. A judge may let readings change by as
-    /// much. After half a second without a call, the ring's top speed, if any, is assumed.
+    /// Reports how fast the robot moves and turns; call it once per control cycle. A judge may let readings change by
+    /// as much. After half a second without a call, the ring's top speed, if any, is assumed.
     pub fn moving(&mut self, speed_mm_s: u32, turn_mrad_s: u32, now: Instant) {
         self.judge.moving(speed_mm_s, turn_mrad_s, now);
         let due = self.plan.deadline();

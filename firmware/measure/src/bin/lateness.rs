@@ -1,5 +1,5 @@
 //! Measures the lateness of firings under echo interrupts: twelve sensors, all with an echo, 200 periods. Prints the
-//! lateness and the resulting shift of crosstalk. Run it at several speeds of the core (`-icount shift=N`: 2^N ns an
+//! lateness and the resulting shift of crosstalk. Run it at several speeds of the core (`-icount shift=N`: 2^N ns per
 //! instruction).
 #![no_std]
 #![no_main]

@@ -30,7 +30,7 @@ fn main() -> ! {
     let Ok(search) = WaitSearch::new(&problem) else { leave(2) };
     let mut memory = [0; memory_words(12)];
     let Ok(best) = search.best_interval::<12>(&mut memory, &mut Budget::unlimited()) else { leave(3) };
-    // 64 ns an instruction.
+    // 64 ns per instruction.
     let instructions = u64::from(eeruf_board::now().since(start).as_micros()) * 1000 / 64;
     if (best.value, best.proven) != (Some(Micros::from_millis(19)), true) {
         leave(4);

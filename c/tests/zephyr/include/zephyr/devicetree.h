@@ -1,6 +1,6 @@
 /* Stands in for Zephyr's header of this name: see ../../board.c. The pins come from the sample's overlay: overlay.h,
- * which `cargo xtask c` writes, defines OVERLAY_trigger_gpios and OVERLAY_echo_gpios, each a macro for all pins with a
- * separator between, and the specifications PIN_trigger_gpios_0 and so on. */
+ * which `cargo xtask c` writes, defines OVERLAY_trigger_gpios and OVERLAY_echo_gpios, macros that list all pins with a
+ * separator, and the specifications PIN_trigger_gpios_0 and so on. */
 #pragma once
 
 #include "overlay.h"

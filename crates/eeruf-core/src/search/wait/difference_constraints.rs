@@ -2,8 +2,8 @@
 //! (Bellman and Ford).
 //!
 //! Node `2 i` is `a_i` and node `2 i + 1` is `b_i`. Every constraint says that one node is at least another plus a
-//! weight, and weights follow from a few words a sensor, so none is stored. If raising never ends or passes `wait_max`
-//! there is no solution; else the result is the least solution, whole ticks because all weights are.
+//! weight, and weights follow from a few words per sensor, so none is stored. If raising never ends or passes
+//! `wait_max` there is no solution; else the result is the least solution, whole ticks because all weights are.
 
 use super::Problem;
 use crate::schedule::MAX_SENSORS;

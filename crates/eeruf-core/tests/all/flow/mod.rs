@@ -70,7 +70,7 @@ fn own_walls_are_believed_in_loops_that_are_late() {
     }
 }
 
-/// Firings a second, and the share of readings accepted, of a ring whose echoes come at random times.
+/// Firings per second, and the share of readings accepted, of a ring whose echoes come at random times.
 fn of_chance(belief: BeliefSettings, told_mm_s: Option<u32>) -> (u32, f64) {
     let mut world = World::believing(8, 5, 0, 1, belief);
     let mut seen = vec![Seen::default(); 8];

@@ -18,7 +18,7 @@ enum Doubt {
 }
 
 /// Runs a ring under random operations in which receivers without a wall hear one path each, from one sensor, with up
-/// to `E` echoes a firing. Returns the numbers of readings compared and believed.
+/// to `E` echoes per firing. Returns the numbers of readings compared and believed.
 fn one_path<const E: usize>(seed: u32, speed_mm_s: u16, changes: bool, doubt: Doubt) -> (u32, u32) {
     let mut dice = Dice { state: u64::from(seed) << 20 | 77, travel: 0 };
     let sensors = 2 + dice.below(11) as usize;

@@ -22,7 +22,7 @@ use walk::{Feasibility, Style};
 /// Words of memory that suffice for every search but counting with this many sensors: 808 bytes for 8, 1,784 for 12.
 #[must_use]
 pub const fn memory_words(sensors: usize) -> usize {
-    // Two orders a pair, one order of s a pair, a rank and a value a sensor; two words a branch.
+    // Two orders per pair, one order of s per pair, a rank and a value per sensor; two words per branch.
     let pairs = sensors * sensors.saturating_sub(1) / 2;
     2 * (3 * pairs + 2 * sensors) + 2
 }

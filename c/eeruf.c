@@ -283,12 +283,12 @@ static void forget(EerufFilter *filter) {
     filter->state &= DISABLED;
 }
 
-/* The greatest uncertainty of an echo time. A sensor's filter stores it in units of 2 us, the present firing's first;
+/* The greatest uncertainty of an echo time. A sensor's filter stores it in units of 2 us, the current firing's first;
    WIDE stands for more. */
 #define MOST_OFF_US 300u
 #define WIDE UINT8_MAX
 
-/* The joint uncertainty of the echoes of the present firing and the one before. */
+/* The joint uncertainty of the echoes of the current firing and the one before. */
 static uint16_t pair_off(const EerufFilter *filter) {
     return (uint16_t)(2 * (filter->off[0] + filter->off[1]));
 }
@@ -1058,7 +1058,7 @@ EerufStatus eeruf_ring_upcoming(const EerufRing *ring, uint8_t number, uint8_t *
     }
 }
 
-/* Records evidence about the present firing. If the line was stuck, nothing more counts. */
+/* Records evidence about the current firing. If the line was stuck, nothing more counts. */
 static void show(EerufRing *ring, uint8_t x, uint8_t evidence) {
     uint8_t *flags = &sensor_of(ring, x)->filter.flags;
     if ((*flags & LISTENING) && (*flags & HELD) != STUCK) *flags = (uint8_t)((*flags & ~HELD) | evidence);

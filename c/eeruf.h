@@ -297,7 +297,7 @@ uint32_t eeruf_ring_due(const EerufRing *ring);
    They hold until one is late or the ring is changed. EERUF_EMPTY beyond the end of the next period, or in a flow ring
    beyond the next firing. The main loop may then run late and replay what happened in order: for each firing, poll at
    its instant until there is no event (EERUF_EVENT_FIRE then reports a firing already done) and report its echoes;
-   finally poll at the present. A firing that hardware has missed is then still due. */
+   finally poll at the current time. A firing that hardware has missed is then still due. */
 EerufStatus eeruf_ring_upcoming(const EerufRing *ring, uint8_t number, uint8_t *sensor, uint32_t *due_us);
 
 /* Reports an echo at an instant: any number, in any order, at any time, expected or not. For a module whose pulse is as

@@ -670,11 +670,11 @@ class HcSr04FlowRing:
             pin.init(self._pin.IN)
 
     def state(self, x):
-        """Return `FlowRing.state` at the present time."""
+        """Return `FlowRing.state` at the current time."""
         return self.ring.state(x, self._time.ticks_us())
 
     def moving(self, speed_mm_s, turn_mrad_s):
-        """Call `FlowRing.moving` with the present time."""
+        """Call `FlowRing.moving` with the current time."""
         self.ring.moving(speed_mm_s, turn_mrad_s, self._time.ticks_us())
 
     def read(self):

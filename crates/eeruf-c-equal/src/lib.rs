@@ -151,7 +151,7 @@ impl C {
         unsafe { shim::shim_verified(self.0, number, numbers.as_ptr(), own) }
     }
 
-    /// `eeruf_ring_init_unverified` with `t_delta_us`, `window_us`, `blanking_us`, `path_change_us`, `audible_us`.
+    /// Calls `eeruf_ring_init_unverified` with `t_delta_us`, `window_us`, `blanking_us`, `path_change_us`, `audible_us`.
     pub fn ring(&mut self, schedule: u32, listening: [u32; 5], consecutive: u8, now_us: u32) -> i32 {
         // SAFETY: a schedule that was made, and five numbers.
         unsafe { shim::shim_ring(self.0, schedule, listening.as_ptr(), consecutive, now_us) }
@@ -183,7 +183,7 @@ impl C {
         unsafe { shim::shim_watch(self.0, sensors, now_us) }
     }
 
-    /// `eeruf_watch_state`: kind, echo, age, why, explanation; or its status.
+    /// Calls `eeruf_watch_state`: kind, echo, age, why, explanation; or its status.
     pub fn state(&self, sensor: u8, now_us: u32) -> Result<[u32; 5], i32> {
         let mut out = [0; 5];
         // SAFETY: a watch that was made, and room for five numbers.
@@ -191,7 +191,7 @@ impl C {
         if status == 0 { Ok(out) } else { Err(status) }
     }
 
-    /// `eeruf_ring_deadline`.
+    /// Calls `eeruf_ring_deadline`.
     pub fn deadline(&self) -> u32 {
         // SAFETY: a ring that was made.
         unsafe { shim::shim_deadline(self.0) }
@@ -225,14 +225,14 @@ impl C {
         frame
     }
 
-    /// `eeruf_hc_sr04_init`.
+    /// Calls `eeruf_hc_sr04_init` for the ring.
     pub fn modules(&mut self, min_retrigger_us: u32, shortest_us: u16) -> i32 {
         // SAFETY: a ring that was made.
         unsafe { shim::shim_modules(self.0, min_retrigger_us, shortest_us) }
     }
 
-    /// `eeruf_flow_init`, with the numbers in the order that `shim.c` names; `own` are the limits of each sensor, or
-    /// empty.
+    /// Calls `eeruf_flow_init`, with the numbers in the order of `shim.c`; `own` has the limits of each sensor, or
+    /// nothing.
     pub fn flow(&mut self, sensors: u8, numbers: &[u32], own: &[u32], now_us: u32) -> i32 {
         assert!(numbers.len() == 15 && (own.is_empty() || own.len() == 4 * usize::from(sensors)));
         let own = if own.is_empty() { std::ptr::null() } else { own.as_ptr() };
@@ -240,13 +240,13 @@ impl C {
         unsafe { shim::shim_flow(self.0, sensors, numbers.as_ptr(), own, now_us) }
     }
 
-    /// `eeruf_flow_moving`.
+    /// Calls `eeruf_flow_moving`.
     pub fn moving(&mut self, speed_mm_s: u32, turn_mrad_s: u32, now_us: u32) -> i32 {
         // SAFETY: a flow ring that was made.
         unsafe { shim::shim_moving(self.0, speed_mm_s, turn_mrad_s, now_us) }
     }
 
-    /// `eeruf_flow_quiet_us` and `eeruf_flow_believed_us`.
+    /// Calls `eeruf_flow_quiet_us` and `eeruf_flow_believed_us`.
     pub fn quiet_and_belief(&self, sensor: u8) -> [u32; 2] {
         let mut out = [0; 2];
         // SAFETY: a flow ring that was made, and room for two numbers.
@@ -255,13 +255,13 @@ impl C {
     }
 }
 
-/// `eeruf_sound_mm_s`.
+/// Calls `eeruf_sound_mm_s`.
 pub fn sound_mm_s(celsius_tenths: i16) -> u32 {
     // SAFETY: any number will do, here and below.
     unsafe { shim::eeruf_sound_mm_s(celsius_tenths) }
 }
 
-/// `eeruf_distance_mm`.
+/// Calls `eeruf_distance_mm`.
 pub fn distance_mm(t_echo_us: u32, c_mm_s: u32) -> u32 {
     // SAFETY: see above.
     unsafe { shim::eeruf_distance_mm(t_echo_us, c_mm_s) }
@@ -279,13 +279,13 @@ impl Edges {
         Self
     }
 
-    /// `eeruf_edges_push`.
+    /// Calls `eeruf_edges_push`.
     pub fn push(&mut self, sensor: u8, high: bool, at_us: u32) {
         // SAFETY: it was made.
         unsafe { shim::shim_edges_push(sensor, high.into(), at_us) };
     }
 
-    /// `eeruf_edges_pop`: sensor, level and instant, if there is one; and how many were lost.
+    /// Calls `eeruf_edges_pop`: sensor, level and instant, if there is one; and how many were lost.
     pub fn pop(&mut self) -> (Option<[u32; 3]>, u32) {
         let mut out = [0; 4];
         // SAFETY: room for four numbers.

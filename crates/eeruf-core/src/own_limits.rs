@@ -293,7 +293,7 @@ pub(crate) struct InUse<U> {
     now: U,
     /// Limits of the previous period, whose firings may still be listened for.
     before: U,
-    /// Limits of the next period; those of the present one unless another schedule begins then.
+    /// Limits of the next period; those of the current one unless another schedule begins then.
     next: U,
 }
 

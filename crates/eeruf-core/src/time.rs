@@ -136,7 +136,7 @@ impl Instant {
         Self(us as u32)
     }
 
-    /// The reading of a clock of 64 bits at this instant: the one nearest to `now_us`, its present reading, but not
+    /// The reading of a clock of 64 bits at this instant: the one nearest to `now_us`, its current reading, but not
     /// before the clock began.
     ///
     /// ```

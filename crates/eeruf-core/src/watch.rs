@@ -102,7 +102,7 @@ pub enum Doubt {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 struct Watched {
     known: Known,
-    /// The instant of the last confirmation, or the beginning of the present state.
+    /// The instant of the last confirmation, or the beginning of the current state.
     at: Instant,
     /// True if the last reading did not confirm the state.
     doubted: bool,

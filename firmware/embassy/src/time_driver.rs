@@ -19,7 +19,7 @@ embassy_time_driver::time_driver_impl!(static TIME: BoardTime = BoardTime {
     queue: Mutex::new(RefCell::new(Queue::new())),
 });
 
-/// Returns the present time in 64 bits: the board's clock wraps every 71 minutes, and is read more often than that.
+/// Returns the current time in 64 bits: the board's clock wraps every 71 minutes, and is read more often than that.
 fn now_us(token: CriticalSection<'_>) -> u64 {
     let clock = TIME.clock_us.borrow(token);
     let before = clock.get();

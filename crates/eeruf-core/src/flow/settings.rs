@@ -8,7 +8,7 @@ use crate::time::{Micros, longer, shorter};
 
 /// Shortest valid quiet: a smaller number is probably in milliseconds.
 const LEAST_QUIET: Micros = Micros::new(100);
-/// The longest quiet, and the longest time between two firings of a sensor.
+/// The longest valid quiet; [`LONGEST_REST`] is the longest valid rest.
 const LONGEST_QUIET: Micros = Micros::from_millis(250);
 pub(super) const LONGEST_REST: Micros = Micros::from_millis(4_000);
 

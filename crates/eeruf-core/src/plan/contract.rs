@@ -95,9 +95,9 @@ pub trait Plan {
     fn set_pace(&mut self, _pace: Pace) {}
     /// Starts again with phase a, at `now` or later.
     fn restart(&mut self, now: Instant);
-    /// The context of a sensor's last firing, which was `periods_ago` periods before the present one.
+    /// The context of a sensor's last firing, which was `periods_ago` periods before the current one.
     fn last_firing(&self, sensor: u8, periods_ago: u8) -> FiringContext;
-    /// Limits in the present period.
+    /// Limits in the current period.
     fn limits(&self) -> PlanLimits<'_>;
     /// Limits from the next period on, if the schedule changes then.
     fn next_limits(&self) -> Option<PlanLimits<'_>> {

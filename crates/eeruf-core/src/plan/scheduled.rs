@@ -84,15 +84,15 @@ impl<'s, const K: usize, const M: usize, U: OwnLimits> ScheduledFiring<'s, K, M,
         Self::holding(schedule, own_limits.hold(), now)
     }
 
-    /// The schedule of the present period.
+    /// The schedule of the current period.
     pub const fn schedule(&self) -> &'s Schedule<K, M> {
         self.schedule
     }
 
-    /// Changes to another schedule when the present period ends.
+    /// Changes to another schedule when the current period ends.
     ///
     /// The two schedules were not verified against each other, so the first period begins late enough after the last
-    /// firing to keep every refire time of the present schedule and every interval of both.
+    /// firing to keep every refire time of the current schedule and every interval of both.
     pub fn change_schedule<L: OwnLimits<Held<'s> = U>>(&mut self, schedule: &'s VerifiedSchedule<K, M, L>) {
         self.change_to(schedule.schedule(), schedule.own_limits().hold());
     }
@@ -118,7 +118,7 @@ impl<T: Deref<Target = Schedule<K, M>>, const K: usize, const M: usize, U: OwnLi
         }
     }
 
-    /// The pointer to the schedule of the present period.
+    /// The pointer to the schedule of the current period.
     pub const fn table(&self) -> &T {
         &self.schedule
     }

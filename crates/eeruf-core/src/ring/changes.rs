@@ -18,7 +18,7 @@ use crate::verified::VerifiedSchedule;
 impl<'s, const N: usize, const M: usize, U: OwnLimits, J: Judge, const K: usize, const E: usize, const H: usize>
     Ring<ScheduledFiring<'s, N, M, U>, J, K, E, H>
 {
-    /// Changes to another schedule when the present period ends (see [`ScheduledFiring::change_schedule`]). `t_delta`,
+    /// Changes to another schedule when the current period ends (see [`ScheduledFiring::change_schedule`]). `t_delta`,
     /// window, P and R stay. If sensors have limits of their own, each keeps the lesser of both schedules' in the first
     /// period after the change.
     ///

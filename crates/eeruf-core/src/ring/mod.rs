@@ -148,7 +148,7 @@ impl<'s, const K: usize, const M: usize, const E: usize> Ring<ScheduledFiring<'s
 impl<'s, const K: usize, const M: usize, U: OwnLimits, J, const E: usize, const H: usize>
     Ring<ScheduledFiring<'s, K, M, U>, J, K, E, H>
 {
-    /// The schedule of the present period.
+    /// The schedule of the current period.
     pub const fn schedule(&self) -> &'s Schedule<K, M> {
         self.plan.schedule()
     }
@@ -306,11 +306,11 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
 
     /// The upcoming firings in order, for hardware that fires by itself: a timer, PIO or RMT. They are valid until one
     /// is late or the ring is changed. With a table they reach to the end of the next period, otherwise to that of the
-    /// present one.
+    /// current one.
     ///
     /// The main loop may then run late. Replay what happened in order: for each firing, poll at its instant until there
     /// is no event ([`RingEvent::Fire`] then reports a firing that is already done) and report its echoes; finally poll
-    /// at the present. A firing that hardware has missed is then still due.
+    /// at the current time. A firing that hardware has missed is then still due.
     ///
     /// ```
     /// use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, tables::PAPER_12};

@@ -11,10 +11,10 @@ use crate::time::{Instant, Micros};
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub(super) struct Sensor<const E: usize, const H: usize> {
     pub(super) firings: Firings<H>,
-    /// The echoes of the present firing; an early or late edge is stored in the first place.
+    /// The echoes of the current firing; an early or late edge is stored in the first place.
     echoes: [Micros; E],
     flags: u8,
-    /// Uncertainty of the echoes of the present firing, of the one before and of all earlier ones, in units of
+    /// Uncertainty of the echoes of the current firing, of the one before and of all earlier ones, in units of
     /// [`UNIT`]: the greatest of each; or [`WIDE`].
     uncertain: [u8; 3],
 }
@@ -23,7 +23,7 @@ pub(super) struct Sensor<const E: usize, const H: usize> {
 const UNIT: u32 = 2;
 /// The greatest uncertainty of an echo time: 5 cm.
 const MOST: Micros = Micros::new(300);
-/// Marker of an edge of the present firing that came within too wide an interval.
+/// Marker of an edge of the current firing that came within too wide an interval.
 const WIDE: u8 = u8::MAX;
 
 // The flags of a sensor, beside the period in which it fired, modulo 8.
@@ -83,7 +83,7 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
         self.flags & HELD
     }
 
-    /// Notes evidence about the present firing, if there is one. If the line was stuck, nothing more counts.
+    /// Notes evidence about the current firing, if there is one. If the line was stuck, nothing more counts.
     pub(super) fn shows(&mut self, evidence: u8) {
         if self.is(LISTENING) && self.evidence() != STUCK {
             self.flags = self.flags & !HELD | evidence;
@@ -180,7 +180,7 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
         self.be_uncertain(off.as_micros().div_ceil(UNIT) as u8)
     }
 
-    /// Raises the uncertainty of the present firing's echoes to this.
+    /// Raises the uncertainty of the current firing's echoes to this.
     fn be_uncertain(&mut self, units: u8) -> Noted {
         let [now, ..] = &mut self.uncertain;
         *now = units.max(*now);
@@ -257,7 +257,7 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
         Ended { is_held, unusable, echoes, uncertain }
     }
 
-    /// Takes the late edge of a firing that has ended. The flag is true if its silence counts only now, too.
+    /// Takes out the late edge of a firing that has ended. The flag is true if the silence counts only now.
     pub(super) fn end_late(&mut self) -> (Option<Micros>, bool) {
         let (t_echo, is_held) = (self.held(), self.evidence() == HELD);
         self.echoes = [NO_ECHO; E];

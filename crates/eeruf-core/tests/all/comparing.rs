@@ -14,7 +14,7 @@ const WINDOW: Micros = Micros::from_millis(40);
 struct Run<'s> {
     ring: ScheduledRing<'s, 12>,
     now: Instant,
-    /// The firings of the present period with their instants.
+    /// The firings of the current period with their instants.
     fired: Vec<(u8, Instant)>,
 }
 

@@ -233,7 +233,7 @@ fn change_between_uneven_schedules_keeps_both_limits() {
     let config = RingConfig::new().with_window(Micros::from_millis(50)).with_t_delta(Micros::new(1_900));
     let mut ring: Ring<_, _, 4> = Ring::new(&schedules[0], config, Instant::from_micros(u32::MAX - 500_000)).unwrap();
     let mut random = Random(5);
-    // The schedules of the present period and the one before; when each sensor fired, by which schedule, and until when
+    // The schedules of the current period and the one before; when each sensor fired, by which schedule, and until when
     // it listened.
     let (mut present, mut before) = (0, 0);
     let mut fired: [Option<(Instant, usize)>; 4] = [None; 4];

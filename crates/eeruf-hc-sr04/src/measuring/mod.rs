@@ -13,7 +13,7 @@
 //! Silence is not an answer: a reading is [`Clear`](eeruf_core::ReadingKind::Clear) only after the module itself
 //! reported that nothing is in range, and [`Unanswered`](eeruf_core::ReadingKind::Unanswered) without a valid report.
 //! Each driver discards what is left of an earlier measurement. It cannot recognise an answer that is a whole period
-//! late if the present one is missing.
+//! late if the current one is missing.
 
 mod mb1010;
 mod ring;

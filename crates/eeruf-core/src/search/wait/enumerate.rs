@@ -13,7 +13,7 @@ pub(crate) struct Enumeration<'p> {
     b: [u32; MAX_SENSORS],
     /// Number of sensors whose waits fit together; `None` when all tables were returned.
     depth: Option<usize>,
-    /// True if the present table was returned: the next one starts after it.
+    /// True if the current table was returned: the next one starts after it.
     handed_out: bool,
 }
 
@@ -43,7 +43,7 @@ impl<'p> Search<'p> {
 
 // Indices are sensors, below `lag.len() <= MAX_SENSORS`.
 impl Enumeration<'_> {
-    /// The waits of the present table, in ticks.
+    /// The waits of the current table, in ticks.
     pub(crate) const fn waits(&self) -> (&[u32; MAX_SENSORS], &[u32; MAX_SENSORS]) {
         (&self.a, &self.b)
     }
@@ -86,7 +86,7 @@ impl Enumeration<'_> {
         in_range && self.is_separate(k) && self.in_time(k, 0) && self.in_time(k, 1)
     }
 
-    /// Moves sensor `k` to the first pair of waits, from the present one on, that fits the sensors before it.
+    /// Moves sensor `k` to the first pair of waits, from the current one on, that fits the sensors before it.
     fn seek(&mut self, k: usize) -> bool {
         let wait_max = self.problem.wait_max;
         while self.a[k] <= wait_max {

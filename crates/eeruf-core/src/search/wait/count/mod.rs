@@ -20,8 +20,8 @@ use crate::search::Outcome;
 use bits::MASK_MAX;
 use walk::Counting;
 
-/// A sensible amount of memory for [`WaitSearch::count`](crate::search::WaitSearch::count) on a PC, in words (4 MiB): a
-/// choice. Less memory gives the same count more slowly. On targets with 16-bit `usize` it is 1 KiB.
+/// A sensible amount of memory for [`WaitSearch::count`](crate::search::WaitSearch::count) on a PC, in words (4 MiB),
+/// chosen freely. With less memory the count is the same, but slower. On targets with 16-bit `usize` it is 1 KiB.
 pub const COUNT_WORDS: usize = 1 << if usize::BITS > 16 { 20 } else { 8 };
 
 impl Search<'_> {

@@ -151,7 +151,7 @@ impl C {
         unsafe { shim::shim_verified(self.0, number, numbers.as_ptr(), own) }
     }
 
-    /// Calls `eeruf_ring_init_unverified` with `t_delta_us`, `window_us`, `blanking_us`, `path_change_us`, `audible_us`.
+    /// Calls `eeruf_ring_init_unverified`; `listening`: `t_delta`, window, blanking, path change, audible time.
     pub fn ring(&mut self, schedule: u32, listening: [u32; 5], consecutive: u8, now_us: u32) -> i32 {
         // SAFETY: a schedule that was made, and five numbers.
         unsafe { shim::shim_ring(self.0, schedule, listening.as_ptr(), consecutive, now_us) }

@@ -15,7 +15,7 @@ use crate::time::Micros;
 pub enum ReadingKind {
     /// An echo with nothing to compare it with: at the start, or after a firing without echo.
     First,
-    /// Near-identical to the previous reading (Eq. 11), as many times in a row as the filter requires.
+    /// Near-identical to the previous reading (Eq. 11), the required number of times in a row.
     Accepted,
     /// Not near-identical to the previous reading: crosstalk, noise, or an object that moved too fast.
     Rejected,
@@ -24,7 +24,7 @@ pub enum ReadingKind {
     /// No echo within the window, once; or repeatedly, if nothing shows that the sensor listened
     /// ([`Silence::NeverFree`](crate::Silence)).
     NoEcho,
-    /// No echo as many times in a row as the filter requires: nothing is in range.
+    /// No echo for the required number of firings in a row: nothing is in range.
     Clear,
     /// Only an edge within the blanking time: ringing of the transducer, or an object too close to measure.
     TooEarly,

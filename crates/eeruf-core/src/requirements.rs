@@ -107,7 +107,7 @@ pub struct Requirements<'a> {
     /// True to also reject a sensor's own echo from an earlier period, however long its path: `2 |d| > 2 T_delta` for
     /// each sensor with two phases.
     pub stale_echo: bool,
-    /// Needs of single sensors and pairs, where they are not all alike.
+    /// Needs of single sensors and pairs, if they are not all alike.
     pub uneven: Option<Uneven<'a>>,
 }
 

@@ -299,7 +299,7 @@ impl<'s, U: OwnLimits, J: Judge, T, I, D, const K: usize, const M: usize, const 
     ///
     /// # Errors
     /// [`SetupError::Retrigger`] if the schedule fires a sensor again sooner than it may be triggered, and as
-    /// [`Ring::change_schedule`]. The ring then goes on as before.
+    /// [`Ring::change_schedule`]. The ring is then unchanged.
     pub fn change_schedule<L: OwnLimits<Held<'s> = U>>(
         &mut self,
         schedule: &'s VerifiedSchedule<K, M, L>,

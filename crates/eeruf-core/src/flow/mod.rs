@@ -68,7 +68,7 @@ impl<const K: usize, const E: usize> FlowRing<K, E> {
     /// Changes the seed of the random gaps, for example to the chip's number in a ring that is a `const`.
     ///
     /// # Errors
-    /// [`RingError::Setting`] for 0. The ring then goes on as before.
+    /// [`RingError::Setting`] for 0. The ring is then unchanged.
     pub fn set_seed(&mut self, seed: u32) -> Result<(), RingError> {
         self.change_plan(|plan| plan.set_seed(seed))
     }

@@ -51,8 +51,7 @@ impl TurnSettings {
         Self { least, most, rest, dice: Micros::from_millis(2), seed }
     }
 
-    /// Returns settings that fire one by one, or group by group where sensors fire together: always with the most
-    /// quiet.
+    /// Returns settings that fire one by one, or group by group if sensors fire together, always with the most quiet.
     #[must_use]
     pub const fn one_by_one(self) -> Self {
         Self { least: self.most, ..self }

@@ -87,7 +87,7 @@ pub trait Plan {
     fn sensors(&self) -> usize;
     /// Enables a sensor from its next turn on, or disables it.
     fn set_enabled(&mut self, sensor: u8, enabled: bool);
-    /// Pauses all sensors, or resumes them; periods go on.
+    /// Pauses all sensors, or resumes them; periods continue.
     fn set_paused(&mut self, paused: bool);
     /// Returns true if a sensor is enabled, whether or not the plan is paused.
     fn is_enabled(&self, sensor: u8) -> bool;

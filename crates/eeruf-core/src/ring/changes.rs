@@ -25,7 +25,7 @@ impl<'s, const N: usize, const M: usize, U: OwnLimits, J: Judge, const K: usize,
     /// # Errors
     /// [`RingError::TDelta`] or [`RingError::VerifiedWindow`] if the schedule was verified for less than the ring's
     /// `t_delta` or window; [`RingError::Blanking`] if a sensor would listen no longer than the blanking time. The ring
-    /// then goes on as before.
+    /// is then unchanged.
     pub fn change_schedule<L: OwnLimits<Held<'s> = U>>(
         &mut self,
         schedule: &'s VerifiedSchedule<N, M, L>,
@@ -70,7 +70,7 @@ impl<P: Plan, const K: usize, const E: usize, const H: usize> Ring<P, EchoFilter
     ///
     /// # Errors
     /// [`RingError::TDelta`] for more than the schedule was verified for, [`RingError::CoarseTDelta`] for one that is
-    /// no shorter than the window. The ring then goes on as before.
+    /// no shorter than the window. The ring is then unchanged.
     pub fn set_t_delta(&mut self, t_delta: Micros) -> Result<(), RingError> {
         self.listening = self.listening.changed(t_delta, self.window(), self.blanking(), &self.plan)?;
         self.disturb();
@@ -89,11 +89,11 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         Ok(())
     }
 
-    /// Sets the listening window, also of firings in progress.
+    /// Sets the listening window, also for firings in progress.
     ///
     /// # Errors
     /// [`RingError`] for more than the schedule allows or was verified for, or for no more than the blanking time or
-    /// `t_delta`. The ring then goes on as before.
+    /// `t_delta`. The ring is then unchanged.
     pub fn set_window(&mut self, window: Micros) -> Result<(), RingError> {
         self.listening = self.listening.changed(self.t_delta(), window, self.blanking(), &self.plan)?;
         if self.windows_differ() {
@@ -108,7 +108,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     /// [`measured`](Self::measured) takes any echo time within the window.
     ///
     /// # Errors
-    /// [`RingError::Window`] for more than the time until a sensor fires again. The ring then goes on as before.
+    /// [`RingError::Window`] for more than the time until a sensor fires again. The ring is then unchanged.
     pub fn set_report_after(&mut self, report_after: Micros) -> Result<(), RingError> {
         let min_refire = self.plan.min_refire();
         if report_after > min_refire {
@@ -127,8 +127,8 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     /// blanking time.
     ///
     /// # Errors
-    /// [`RingError::Blanking`] for one that is no shorter than the window, or longer than 65,535 us. The ring then goes
-    /// on as before.
+    /// [`RingError::Blanking`] for one that is no shorter than the window, or longer than 65,535 us. The ring is then
+    /// unchanged.
     pub fn set_blanking(&mut self, blanking: Micros) -> Result<(), RingError> {
         self.listening = self.listening.changed(self.t_delta(), self.window(), blanking, &self.plan)?;
         Ok(())
@@ -138,7 +138,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     /// [`RingConfig::path_change`](super::RingConfig::path_change)), for example when the robot's speed changes.
     ///
     /// # Errors
-    /// [`RingError::PathChange`] for more than 65,534 us. The ring then goes on as before.
+    /// [`RingError::PathChange`] for more than 65,534 us. The ring is then unchanged.
     pub fn set_path_change(&mut self, path_change: Micros) -> Result<(), RingError> {
         self.listening = self.listening.with_path_change(path_change)?;
         self.disturb();
@@ -148,14 +148,14 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     /// Sets R, how long sound is audible.
     ///
     /// # Errors
-    /// [`RingError::Audible`] for more than 67 s. The ring then goes on as before.
+    /// [`RingError::Audible`] for more than 67 s. The ring is then unchanged.
     pub fn set_audible(&mut self, audible: Micros) -> Result<(), RingError> {
         self.listening = self.listening.with_audible(audible)?;
         self.disturb();
         Ok(())
     }
 
-    /// Stops a sensor from firing. The reading of a firing that is under way is still emitted.
+    /// Stops a sensor from firing. The reading of a firing that is in progress is still emitted.
     ///
     /// # Errors
     /// [`SensorError`] for a sensor out of range.
@@ -180,8 +180,8 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
         Ok(())
     }
 
-    /// Stops all sensors from firing until [`resume`](Self::resume). Readings of firings under way are still emitted;
-    /// periods go on, so that a deadline still comes once per period. For a longer sleep do not poll, and
+    /// Stops all sensors from firing until [`resume`](Self::resume). Readings of firings in progress are still emitted;
+    /// periods continue, so that a deadline still comes once per period. For a longer sleep do not poll, and
     /// [`restart`](Self::restart) after it.
     pub fn pause(&mut self) {
         self.plan.set_paused(true);
@@ -199,7 +199,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     }
 
     /// Starts again with phase a at `now`, or as soon as the last firings allow. Firings in progress are dropped and
-    /// earlier readings forgotten; ages and the count of periods go on. Restart a
+    /// earlier readings forgotten; ages and the count of periods continue. Restart a
     /// [`SensorWatch`](crate::watch::SensorWatch) at the same time.
     pub fn restart(&mut self, now: Instant) {
         self.plan.restart(now);

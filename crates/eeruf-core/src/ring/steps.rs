@@ -114,7 +114,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
             self.known_from = long_before(now);
         }
         if differed || self.windows_differ() {
-            // Another schedule may allow other windows, also to firings under way.
+            // Another schedule may allow other windows, also to firings in progress.
             self.find_first_to_close();
         }
         let stats = PeriodStats {

@@ -1,4 +1,4 @@
-//! Results that a search gives back to the user, in microseconds.
+//! Results that a search returns to the user, in microseconds.
 
 use crate::schedule::Schedule;
 use crate::time::Micros;

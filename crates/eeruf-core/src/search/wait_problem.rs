@@ -1,4 +1,4 @@
-//! [`WaitProblem`]: the paper's question in microseconds. Lags are given, and two waits are sought for each sensor.
+//! [`WaitProblem`]: the paper's question in microseconds: given the lags, find two waits for each sensor.
 
 use core::fmt;
 

@@ -209,7 +209,7 @@ fn a_larger_t_delta_takes_hold_at_once() {
         }
     }
     assert!(now != at(0), "it goes on");
-    // Readings of the firings under way, and the first after the pause.
+    // Readings of the firings in progress, and the first after the pause.
     assert!(kinds[26..].iter().all(|kind| *kind == ReadingKind::Accepted), "{kinds:?}");
 }
 

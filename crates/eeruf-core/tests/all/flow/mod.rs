@@ -105,7 +105,7 @@ fn votes_follow_from_motion_and_company() {
     ];
     for (belief, told) in every {
         let (_, accepted) = of_chance(belief, told);
-        // All but the firings under way.
+        // All but the firings in progress.
         assert!(accepted > 0.99, "{belief:?} {told:?}: {accepted}");
     }
     for (belief, told) in two {

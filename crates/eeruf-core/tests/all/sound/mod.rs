@@ -1,4 +1,4 @@
-//! The promise of a ring, whatever fires when: one path of sound, audible for no longer than R and changing by no more
+//! The promise of a ring, at any firing times: one path of sound, audible for no longer than R and changing by no more
 //! than P, is never accepted, and a reading that nothing foreign explains always is. [`world`] performs every operation
 //! on a ring; [`model`] applies the rule and forgets nothing.
 //!

@@ -72,7 +72,7 @@ pub(super) struct Memo<'m> {
 }
 
 impl<'m> Memo<'m> {
-    /// A table for keys of at most `masks` words beside the level.
+    /// A table for keys of the level and at most `masks` words.
     pub(super) fn new(slots: &'m mut [u32], masks: usize) -> Self {
         let words = 1 + masks + ENTRY_WORDS;
         let entries = slots.len() / words;

@@ -317,7 +317,7 @@ uint32_t eeruf_ring_fired_at(const EerufRing *ring, uint8_t sensor);
 /* Reports that a sensor's echo line was high when it was to fire: its reading is EERUF_READING_STUCK. */
 EerufStatus eeruf_ring_stuck(EerufRing *ring, uint8_t sensor);
 
-/* The meaning of silence, from the next firing on: of a firing without an echo if neither eeruf_ring_answered nor
+/* The meaning of a firing without an echo, from the next firing on, if neither eeruf_ring_answered nor
    eeruf_ring_measured has shown that the sensor listened. EerufHcSr04 takes care of all this. */
 enum {
     EERUF_SILENCE_NEVER_FREE = 0,   /* the default: neither free space nor a fault, EERUF_READING_NO_ECHO however often */

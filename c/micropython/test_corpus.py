@@ -1,7 +1,7 @@
 """Compare eeruf.py with the Rust crate eeruf-core over the corpus: python3 test_corpus.py [corpus.txt].
 
 Without a file it uses the lines that the repository keeps. It runs under MicroPython too. The lines are described in
-crates/eeruf-core/tests/all/corpus.rs, those of flow rings in corpus/flow.rs; rings that fire by a table are left out."""
+crates/eeruf-core/tests/all/corpus.rs, for flow rings in corpus/flow.rs; rings that fire by a table are left out."""
 
 import sys
 

@@ -26,12 +26,12 @@ impl fmt::Display for Random {
 }
 
 impl Random {
-    /// Draws from a seed.
+    /// Creates a generator that draws from a seed.
     pub const fn new(seed: u64) -> Self {
         Self(Source::Seed(seed, Cell::new(seed)))
     }
 
-    /// Draws from bytes: each number takes the bytes that it needs, little-endian. Past the end all numbers are 0.
+    /// Creates one that draws from bytes: each number takes what it needs, little-endian. Past the end all are 0.
     pub fn of_bytes(bytes: &[u8]) -> Self {
         Self(Source::Bytes(bytes.into(), Rc::default()))
     }

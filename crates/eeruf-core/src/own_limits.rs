@@ -94,7 +94,7 @@ pub struct EachSensor<const K: usize> {
     /// `None` if all sensors are alike.
     most: Option<VerifiedFor>,
     limits: [SensorLimits; K],
-    /// The group that each sensor fires together with, from 1; 0 for none.
+    /// The group in which each sensor fires, from 1; 0 for none.
     groups: [u8; K],
     /// For each sensor, the echo line that it shares, from 1; 0 for a line of its own.
     lines: [u8; K],
@@ -185,7 +185,7 @@ impl<const K: usize> EachSensor<K> {
         self.limits.get(usize::from(sensor)).copied()
     }
 
-    /// The group that each sensor fires together with, from 1; 0 for none.
+    /// The group in which each sensor fires, from 1; 0 for none.
     pub const fn groups(&self) -> &[u8; K] {
         &self.groups
     }
@@ -314,7 +314,7 @@ impl<U: OwnLimits> InUse<U> {
         self.now = self.next;
     }
 
-    /// The limits of one sensor; in the first period after a change the lesser of both.
+    /// The limits of one sensor; in the first period after a change, the lesser of the old and the new.
     #[inline]
     pub(crate) fn limits_of(&self, sensor: u8) -> Option<SensorLimits> {
         let (now, before) = (self.now.limits_of(sensor), self.before.limits_of(sensor));

@@ -86,7 +86,7 @@ parameters! {
     echo_lines: Vec<u32> = Vec::new(), "[]";
     /// For gpio by flow: the robot's speeds (nav_msgs/Odometry); without messages, the ring file's.
     odometry_topic: String = "odom".to_owned(), "odom";
-    /// For simulation: a scene file, whose first robot is the ring, and how it fires and filters.
+    /// For simulation: a scene file whose first robot carries the ring, and how that ring fires and filters.
     scene: PathBuf = PathBuf::new(), "\"\"";
     /// A method of `eeruf study`: flow, eeruf (a table), ..; gpio knows these two.
     method: String = "flow".to_owned(), "flow";

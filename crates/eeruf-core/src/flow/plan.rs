@@ -264,8 +264,8 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
         all
     }
 
-    /// The time from the last firing until a sensor, and those that fire with it, may fire, without the random part:
-    /// until there is quiet, they have rested and their lines are free.
+    /// Two times from the last firing, without the random part: until all is quiet for a sensor and those that fire
+    /// with it, and until they have rested and their lines are free.
     fn waits(&self, sensor: u8, own: &Slot, listeners: &Listeners) -> (Micros, Micros) {
         let mut all = self.waits_alone(sensor, own, listeners);
         let group = self.own_limits.group_of(sensor);
@@ -310,7 +310,7 @@ impl<const K: usize, U: OwnLimits> InTurn<K, U> {
         self.decide_no_sooner();
     }
 
-    /// The time from the last firing of the plan until `after` past this one; zero if that has passed.
+    /// The time from the plan's last firing until `after` has passed since this firing; zero if it already has.
     fn since_last(&self, fired: Instant, after: Micros) -> Micros {
         let until = fired + after;
         if self.last.has_reached(until) { Micros::ZERO } else { until.since(self.last) }

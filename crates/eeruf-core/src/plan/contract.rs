@@ -58,7 +58,7 @@ pub trait Plan {
     }
     /// Returns the time when the next step is due.
     fn deadline(&self) -> Instant;
-    /// The sensor that fires next and the phase of its wait; none if the period ends next.
+    /// The sensor that fires next and the phase of its wait; `None` if the period ends next.
     fn next_firing(&self) -> Option<(u8, Phase)>;
     /// The next firings in order, if none is late: all that are decided, at least the next one of this period.
     fn upcoming(&self) -> impl Iterator<Item = Upcoming> {
@@ -79,7 +79,7 @@ pub trait Plan {
     fn fired(&mut self, _sensor: u8, _at: Instant) {}
     /// Notes that a sensor stopped listening `at` this instant: its echo came in, or its window closed.
     fn ended(&mut self, sensor: u8, at: Instant);
-    /// Sets the instant from which lateness of the next firing counts: before the last call it was not due any sooner.
+    /// Counts the next firing as due no sooner than this instant, from which its lateness is measured.
     fn due_from(&mut self, _soonest: Instant) {}
     /// Forgets a sensor's readings, and all that depends on them.
     fn forget(&mut self, _sensor: u8) {}

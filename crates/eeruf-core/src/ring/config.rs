@@ -5,7 +5,7 @@ use crate::plan::Plan;
 use crate::ring_error::RingError;
 use crate::time::Micros;
 
-/// The meaning of silence: a firing without an echo whose sensor has not shown that it listened
+/// The meaning of a firing without an echo whose sensor has not shown that it listened
 /// ([`Ring::answered`](super::Ring::answered), [`Ring::measured`](super::Ring::measured)).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
@@ -21,8 +21,8 @@ pub enum Silence {
     Trusted,
 }
 
-/// Settings by which a [`Ring`](super::Ring) listens and compares; `E` is the number of echoes that a sensor reports of
-/// one firing.
+/// Settings by which a [`Ring`](super::Ring) listens and compares; `E` is the number of echoes that a sensor reports
+/// per firing.
 ///
 /// ```
 /// use eeruf_core::{Micros, RingConfig};
@@ -114,7 +114,7 @@ impl<const E: usize> RingConfig<E> {
         Self { audible: Some(audible), ..self }
     }
 
-    /// Sets the number of echoes that a sensor reports of one firing.
+    /// Sets the number of echoes that a sensor reports per firing.
     #[must_use]
     pub const fn with_echoes<const N: usize>(self) -> RingConfig<N> {
         let Self { t_delta, window, blanking, consecutive, path_change, audible } = self;

@@ -34,7 +34,7 @@ pub use config::{RingConfig, Silence};
 pub use events::{PeriodStats, Reading, RingEvent};
 
 /// A ring of up to `K` sensors: the [`Plan`] `P` decides when each fires, and the [`Judge`] `J` which readings to
-/// accept. `E` is the number of echoes that a sensor reports of one firing.
+/// accept. `E` is the number of echoes that a sensor reports per firing.
 ///
 /// With an [`EchoFilter`] a reading is accepted if it is near-identical to the one before (Eq. 11) and no firing
 /// explains both as crosstalk; if one does, the reading is [`Ambiguous`](ReadingKind::Ambiguous). The ring judges by
@@ -104,8 +104,8 @@ pub struct Ring<P, J, const K: usize, const E: usize = 1, const H: usize = 4> {
     tally: Tally<u8>,
 }
 
-/// A [`Ring`] with scheduled firing by a schedule of the paper's kind; `U` is `&`[`EachSensor`](crate::EachSensor)
-/// where sensors have limits of their own.
+/// A [`Ring`] with scheduled firing by a schedule of the paper's kind; `U` is `&`[`EachSensor`](crate::EachSensor) if
+/// sensors have limits of their own.
 pub type ScheduledRing<'s, const K: usize, const E: usize = 1, U = ()> =
     Ring<ScheduledFiring<'s, K, 2, U>, EchoFilter<K, E>, K, E>;
 

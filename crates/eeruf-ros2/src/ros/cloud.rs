@@ -9,7 +9,7 @@ use crate::view::View;
 
 use super::messages::{FLOAT32, Header, LaserScan, PointCloud2, PointField, UINT8};
 
-/// Rays of a scan: at 4 m they are 3.5 cm apart, so that none misses a cell of 5 cm.
+/// Number of rays of a scan: at 4 m they are 3.5 cm apart, too close to miss a cell of 5 cm.
 const RAYS: u16 = 720;
 
 /// Name, offset and type of each field.

@@ -21,7 +21,7 @@ pub(crate) struct Problem<'a> {
     pub(crate) interval: u32,
     /// Row `i` has bit `j` set when sensors `i` and `j` conflict; symmetric, diagonal clear.
     pub(crate) conflicts: &'a [u64],
-    /// The interpretation of (13a) and (13b) that holds.
+    /// The interpretation of (13a) and (13b) that applies.
     pub(crate) criterion: Criterion,
 }
 

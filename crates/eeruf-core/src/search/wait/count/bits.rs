@@ -16,8 +16,7 @@ pub(super) fn waits_with(d: i32, left: [u64; 2], s: [u64; 2], paper: bool) -> u6
     waits & shifted(s[odd as usize], (d + odd) / 2)
 }
 
-/// The distance within which a value excludes others: `D - 1`, or more than any wait for a single sensor with a greater
-/// `D`.
+/// The distance within which a value excludes others: `D - 1`, but at most [`MASK_MAX`].
 pub(super) fn reach(problem: &Problem<'_>) -> i32 {
     problem.separation.min(MASK_MAX + 1) as i32 - 1
 }

@@ -1,4 +1,4 @@
-"""Read the faults of an echo line in tests/data/line-faults.txt; fill the table in tests/data/line-fault-outcomes.txt."""
+"""Read an echo line's faults in tests/data/line-faults.txt; fill the table in tests/data/line-fault-outcomes.txt."""
 
 FAULTY = 1  # in the file's ring
 

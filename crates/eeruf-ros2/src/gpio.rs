@@ -37,7 +37,7 @@ pub(crate) trait Lines {
     fn delay_us(&self, us: u32);
     /// Returns the next edge of an echo line; waits for it until this instant, or not at all if that has passed.
     fn next_edge(&self, until_us: u64) -> Result<Option<Edge>, String>;
-    /// The number of edges that were lost so far, modulo 256.
+    /// The number of edges lost so far, modulo 256.
     fn lost(&self) -> u8;
 }
 

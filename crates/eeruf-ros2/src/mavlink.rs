@@ -117,7 +117,7 @@ pub(crate) struct Mavlink {
     reported: Vec<bool>,
     /// Poses in clockwise order, all at the vehicle's centre.
     places: Vec<Place>,
-    /// The named rotation of each sensor that does not share it.
+    /// The named rotation of each sensor; `None` without one, or if another sensor shares it.
     rotations: Vec<Option<u8>>,
 }
 

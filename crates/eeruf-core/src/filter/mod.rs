@@ -6,7 +6,7 @@
 //!
 //! A true echo does not depend on the waits and passes. Crosstalk is rejected, since it moves by more than `T_delta` if
 //! firings kept a schedule that meets (13a), (13b). A [`Ring`](crate::Ring) does not rely on that: it checks whether
-//! sound of another firing explains two readings that agree. If a sensor reports several echoes of one firing, all are
+//! sound of another firing explains two readings that agree. If a sensor reports several echoes per firing, all are
 //! compared, and the earliest that repeats is accepted: crosstalk that arrives before the true echo then no longer
 //! hides it.
 //!

@@ -79,8 +79,8 @@ impl<const N: usize> Known<N> {
 /// ones.
 ///
 /// It suits rings whose waits differ from firing to firing, such as flow rings: under a table of two phases every
-/// second reading has the same crosstalk. Wrapped in [`Agreement`](crate::judge::Agreement), it is a voting baseline,
-/// or with 1 of 1 one that accepts every echo.
+/// second reading has the same crosstalk. Wrapped in [`Agreement`](crate::judge::Agreement), it is a voting baseline;
+/// with 1 of 1 it accepts every echo.
 ///
 /// ```
 /// use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, judge::MOfN};

@@ -1,5 +1,5 @@
-//! [`ImmediateRefiring`]: each sensor fires again as soon as its echo is in and its wait is over (Sec. 3, Figs. 2a,
-//! 2b).
+//! [`ImmediateRefiring`]: each sensor fires again as soon as its echo has arrived and its wait is over (Sec. 3, Figs.
+//! 2a, 2b).
 //!
 //! There is no common period, so neighbours drift past each other; that is why the paper goes on to scheduled firing.
 //! With constant waits crosstalk locks in: a sensor y that hears x takes on x's rhythm, and its error becomes

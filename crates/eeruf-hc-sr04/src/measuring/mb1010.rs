@@ -35,7 +35,7 @@ pub struct Mb1010<T, D> {
 }
 
 impl<T: OutputPin, D: DelayNs> Mb1010<T, D> {
-    /// A module whose RX pin is `rx`, which must be low so far.
+    /// A module whose RX pin is `rx`, which must be low at first.
     pub const fn new(rx: T, delay: D) -> Self {
         Self { rx, delay, is_started: false, pulse: None, differs: false }
     }

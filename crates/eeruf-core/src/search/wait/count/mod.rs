@@ -1,4 +1,4 @@
-//! Number of tables: depth first over the sensors, with earlier counts kept in memory.
+//! Counts the tables, depth first over the sensors, and keeps earlier counts in memory.
 //!
 //! Only part of a partial table matters to the sensors not yet placed: which `|d|` (and `s`) are still free, and which
 //! waits are left for each sensor that conflicts with a placed one. Two partial tables with the same remainder have the

@@ -3,9 +3,9 @@
 EERUF (J. Borenstein and Y. Koren, IEEE T-RA 11(1), 1995) lets every sensor wait a little before it fires, by one of two waits
 that alternate and differ from sensor to sensor. A true echo is unaffected; crosstalk moves, and is rejected.
 
-Times are whole microseconds (``_us``), lengths metres, angles radians. Sensors count from 0. What is wrong with an argument raises
-an :class:`EerufError`, which is a ``ValueError``, with the name, the value and what is expected. ``KINDS`` are the kinds of readings,
-of which arrays hold the indices. :mod:`eeruf.typing` has the types of results, for annotations.
+Times are whole microseconds (``_us``), lengths metres, angles radians. Sensors count from 0. A wrong argument raises
+an :class:`EerufError`, which is a ``ValueError``, with the name, the value and what is expected. ``KINDS`` are the kinds of readings;
+arrays hold indices into it. :mod:`eeruf.typing` has the types of results, for annotations.
 
 Example:
     >>> import eeruf
@@ -44,7 +44,7 @@ from eeruf._eeruf import (
     fit,
 )
 
-# Checkers take it for true, as the one of typing, which would cost more to import than all of eeruf.
+# Type checkers take it for true, like that of typing, whose import would take longer than all of eeruf.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from eeruf import experiments as experiments, logs as logs, plot as plot, typing as typing
@@ -82,7 +82,7 @@ __all__ = [
 
 
 def show_versions() -> None:
-    """Print the versions of eeruf, Python and the packages that eeruf may use, for a report of a fault.
+    """Print the versions of eeruf, Python and the packages that eeruf may use, for a bug report.
 
     Example:
         >>> import eeruf
@@ -103,11 +103,11 @@ def show_versions() -> None:
 
 
 if not TYPE_CHECKING:
-    # On first use: a program without them need not wait for them, or for what they import.
+    # Imported on first use: other programs need not wait for these modules and their imports.
     _MODULES = ("experiments", "logs", "plot", "typing")
     _FROM = {"check": "logs", "read_log": "logs", "Found": "_records", "Report": "_records", "State": "_records"}
 
-    # What there was, and what does it now.
+    # Removed names, and their replacements.
     _GONE = {
         **dict.fromkeys(("EchoTracker", "HoppingSchedule", "HoppingSettings", "TrackerSettings"), "Ring.flow"),
         **{name: f"logs.{name}" for name in ("diagnose", "read_firings", "replay", "survey")},

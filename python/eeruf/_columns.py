@@ -20,7 +20,7 @@ def column(name: str, values: ArrayLike, dtype: type[_Number]) -> NDArray[_Numbe
     import numpy as np
 
     try:
-        # A non-number makes one that is refused when it is looked at.
+        # The conversion of invalid values does not warn; a later check of the numbers refuses them.
         with np.errstate(invalid="ignore"):
             found = np.asarray(values).astype(dtype, order="C")
     except (TypeError, ValueError, OverflowError):

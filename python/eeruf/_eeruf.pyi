@@ -52,7 +52,7 @@ _Module = (
         "mb1010",
         "mb1242",
         "srf08",
-        # As older scenes have them.
+        # Names in older scenes.
         "polaroid_6500",
         "hc_sr04",
     ]
@@ -188,7 +188,7 @@ class Needs:
     def __ne__(self, value: object, /) -> bool: ...
     def __hash__(self, /) -> int: ...
 
-# Needs, or the path of a ring file; and what searches take, which may also be a number of sensors.
+# Needs, or the path of a ring file; and the argument of searches, which may also be a number of sensors.
 _Needs = Needs | str | PathLike[str]
 _Ring = _Int | _Needs
 

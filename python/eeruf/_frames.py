@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from eeruf._types import HeardPaths
 
 _CODES = {"kind": _eeruf.KINDS, "cause": _eeruf.CAUSES}
-# What a file begins with, so that another version can say that it does not know it.
+# The format number at the beginning of a file, by which other versions can reject it.
 _FORMAT = 2
 
 
@@ -58,7 +58,7 @@ def to_xarray(columns: dict[str, NDArray[Any]], about: tuple[str, float, int]) -
     return xr.Dataset({name: ("reading", column) for name, column in columns.items()}, attrs=attributes)
 
 
-# The columns of readings: their types, and what they are by default.
+# The columns of readings, with their types and default values.
 _DEFAULTS: dict[str, tuple[str, float]] = {
     "robot": ("int64", 0),
     "sensor": ("int64", 0),
@@ -161,20 +161,20 @@ def save(
 
 
 def load(file: str | PathLike[str] | IO[bytes]) -> _eeruf.Readings:
-    """Read what ``save`` wrote."""
+    """Read a file that ``save`` wrote."""
     try:
         return _loaded(file)
     except (_eeruf.EerufError, OSError, MemoryError):
         raise
     except Exception as error:
-        # Of the kinds that a damaged file ends in, NumPy, zipfile and zlib name some.
+        # A damaged file raises errors of several kinds, from NumPy, zipfile and zlib.
         raise _eeruf.EerufError(
             f"file = {file!r:.60}; expected what Readings.save wrote, in its format {_FORMAT}"
         ) from error
 
 
 def _loaded(file: str | PathLike[str] | IO[bytes]) -> _eeruf.Readings:
-    """Read what ``save`` wrote, or raise an error of any kind."""
+    """Read a file that ``save`` wrote, or raise an error of any kind."""
     with np.load(file, allow_pickle=False) as parts:
         arrays = {name: parts[name] for name in parts.files}
     if int(arrays.pop("format")) != _FORMAT:

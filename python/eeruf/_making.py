@@ -31,7 +31,7 @@ from eeruf._summary import Result, Summary
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-# A method bears a speed at which this share of the courses is finished.
+# A method sustains a speed at which this share of the courses is finished.
 _BORNE = 0.95
 
 _Fields = dict[str, object]
@@ -112,7 +112,7 @@ def set_two(text: str, runs: Mapping[str, list[_Fields]]) -> SetTwo:
     return SetTwo(**table)  # type: ignore[arg-type]
 
 
-# What of a run of Set II its figures need, under Rust's names.
+# The fields of a run of Set II that its figures need, with Rust's names.
 _OF_COURSES = {
     "rejected_readings": "rejected",
     "wrong_readings": "wrong",
@@ -145,13 +145,13 @@ Table = TypeVar("Table", SetOne, SetTwo, SetThree)
 
 
 def concat(tables: Iterable[Table]) -> Table:
-    """Put parts of one experiment together: the table is that of the undivided run, to the last bit.
+    """Join parts of one experiment; the table equals that of the undivided run, to the last bit.
 
     Args:
-        tables: what :func:`set_one`, :func:`set_two` or :func:`set_three` returned for successive seeds, in any order.
+        tables: results of :func:`set_one`, :func:`set_two` or :func:`set_three` for successive seeds, in any order.
 
     Raises:
-        EerufError: tables of several kinds, settings or methods, or a seed that is missing or there twice.
+        EerufError: tables of different kinds, settings or methods, or a seed that is missing or occurs twice.
 
     Example:
         >>> from eeruf import experiments
@@ -199,7 +199,7 @@ def concat(tables: Iterable[Table]) -> Table:
 def compare(
     one: Iterable[AlcoveRun | Run | PlacingRun], other: Iterable[AlcoveRun | Run | PlacingRun]
 ) -> dict[str, Difference]:
-    """Compare two methods scene by scene: each figure of ``one`` less that of ``other``, paired by seed.
+    """Compare two methods scene by scene: each figure of ``one`` minus that of ``other``, paired by seed.
 
     Scenes in which one of the two lacks a figure are left out of that figure.
 
@@ -208,7 +208,7 @@ def compare(
         other: runs of the other on the same seeds.
 
     Returns:
-        For each figure its :class:`Difference`: mean with the bootstrap's interval, median with the sign test's.
+        The :class:`Difference` of each figure: the mean with the bootstrap's interval, the median with the sign test's.
 
     Raises:
         EerufError: no runs, runs of different experiments, or different seeds.

@@ -28,7 +28,7 @@ class Violation(Result):
     kind: _Condition
     """The condition; the last three only if sensors differ."""
     sensors: tuple[int, int]
-    """The two sensors, from 0; the same one twice where a condition is about one alone."""
+    """The two sensors, from 0; the same one twice if the condition is about a single sensor."""
     phases: tuple[_Phase, _Phase]
     """The phases in which they fire."""
     value_us: int
@@ -51,7 +51,7 @@ class Report(Result):
     """
 
     separation_us: int | None
-    """The smaller left side of (13a), (13b) of the pair that is closest to failing, in microseconds; None for one sensor."""
+    """The smaller left side of (13a), (13b) for the pair that is closest to failing, in microseconds; None for one sensor."""
     max_t_delta_us: int | None
     """The largest ``T_delta`` at which (13a), (13b) (and the stale echo condition, if asked for) hold, in microseconds; None
     if none does."""
@@ -86,7 +86,7 @@ class Report(Result):
 
 @dataclass(frozen=True)
 class Found(Result):
-    """The answer of a search: the best schedule it came to, and whether that is proven.
+    """The result of a search: the best schedule found, and whether it is proven to be the best.
 
     Example:
         >>> import eeruf
@@ -115,7 +115,7 @@ class Found(Result):
     from_atlas: bool = field(default=False, repr=False)
     """True if the atlas of proven rings answered, and nothing was searched."""
     certified_us: int | None = None
-    """The period below which the certificate proves that there is none, in microseconds: where it is less than ``value_us``, the
+    """The lower bound on the period that the certificate proves, in microseconds: if it is less than ``value_us``, the
     period is proven but not certified. None unless the atlas answered or ``design`` was asked for a certificate."""
 
 
@@ -138,7 +138,7 @@ class Blind(Result):
 
 @dataclass(frozen=True)
 class State(Result):
-    """The state of the space before a sensor.
+    """The state of the space in front of a sensor.
 
     Example:
         >>> import eeruf
@@ -148,23 +148,23 @@ class State(Result):
     """
 
     kind: _StateKind
-    """``"obstacle"``: something stands there; ``"clear"``: nothing is in range; ``"too_close"``: closer than the sensor can
-    measure; ``"unanswered"``: it does not answer, or its line is stuck; ``"unknown"``."""
+    """The kind: ``"obstacle"``; ``"clear"``, nothing is in range; ``"too_close"``, something is closer than the sensor can
+    measure; ``"unanswered"``, the sensor does not answer, or its line is stuck; or ``"unknown"``."""
     t_echo_us: int | None = None
     """The echo time of an obstacle, in microseconds; otherwise None."""
     age_us: int = 0
-    """Microseconds since that was last confirmed, or for which nothing has been known or answered; at most 2^31 (36 minutes),
-    which stands for all longer times."""
+    """Microseconds since the state was last confirmed, or since when it has been unknown or unanswered; at most 2^31
+    (36 minutes), which stands for all longer times."""
     why: _Doubt | None = None
     """The reason why nothing is known: ``"no_firing"``, ``"unsure"`` (one echo, or one silence), ``"rejected"``, ``"no_witness"``
-    (silence that nothing confirms) or ``"ambiguous"``; None for all else."""
+    (silence that nothing confirms) or ``"ambiguous"``; None for other kinds."""
     explained_by: int | Literal["history"] | None = None
-    """The sensor whose sound explains an ambiguous echo, or ``"history"``; None for all else."""
+    """The sensor whose sound explains an ambiguous echo, or ``"history"``; None for other states."""
 
 
 @dataclass(frozen=True)
 class RobotState(Result):
-    """A robot of a ``Simulation``, now.
+    """The present state of a robot in a ``Simulation``.
 
     Example:
         >>> from eeruf import sim
@@ -175,7 +175,7 @@ class RobotState(Result):
     """
 
     pose: tuple[float, float, float]
-    """(x, y, heading) in metres and radians."""
+    """The pose: (x, y, heading) in metres and radians."""
     velocity_m_s: tuple[float, float] = (0.0, 0.0)
     """Velocity along x and y, in m/s."""
     turn_rad_s: float = 0.0
@@ -186,7 +186,7 @@ class RobotState(Result):
 
 @dataclass(frozen=True)
 class Steering(Result):
-    """The direction to steer.
+    """The direction to steer in.
 
     Example:
         >>> from eeruf import nav

@@ -39,7 +39,7 @@ class Spread(Result):
     p90: float
     """The value that nine geometries in ten do not exceed."""
     median_95: tuple[float, float]
-    """Where the median lies with 95 % confidence, by bootstrap."""
+    """95 % confidence interval of the median, by bootstrap."""
     p90_95: tuple[float, float]
     """95 % confidence interval of ``p90``."""
     mean: float
@@ -50,7 +50,7 @@ class Spread(Result):
 
 @dataclass(frozen=True)
 class Latency(Result):
-    """The time until a sensor reads right again after a wall has moved.
+    """The time until a sensor reads correctly again after a wall has moved.
 
     Example:
         >>> import eeruf
@@ -63,18 +63,18 @@ class Latency(Result):
     steps: int
     """Number of steps of sensors."""
     median: int | None
-    """Half of the steps are seen within as many periods; None if more than half never are."""
+    """The number of periods within which half of the steps are seen; None if more than half never are."""
     p90: int | None
-    """Nine in ten are."""
+    """The number of periods within which nine in ten steps are seen."""
     never: float
     """Share of the steps that are not seen within 64 periods."""
     never_95: tuple[float, float]
-    """Where ``never`` lies with 95 % confidence, by bootstrap."""
+    """95 % confidence interval of ``never``, by bootstrap."""
 
 
 @dataclass(frozen=True)
 class NewStep(Result):
-    """The time until a wall that comes nearer for the first time is read right; remembering places does not help there.
+    """The time until a wall that comes nearer for the first time is read right, when remembered places do not help.
 
     Example:
         >>> import eeruf
@@ -87,18 +87,18 @@ class NewStep(Result):
     steps: int
     """Number of steps of sensors."""
     median_ms: float | None
-    """Half of the steps are seen within this time, in milliseconds; None if more than half never are."""
+    """The time within which half of the steps are seen, in milliseconds; None if more than half never are."""
     p90_ms: float | None
-    """Nine in ten are."""
+    """The time within which nine in ten steps are seen, in milliseconds."""
     p95_ms: float | None
-    """Nineteen in twenty steps are seen within this time, in milliseconds."""
+    """The time within which nineteen in twenty steps are seen, in milliseconds."""
     never: float
     """Share of the steps that are not seen within 64 periods."""
 
 
 @dataclass(frozen=True)
 class SetOneFigures(Result):
-    """A method's figures over the geometries of Set I; those of a :class:`~eeruf.typing.Summary`, as spreads.
+    """A method's figures over the geometries of Set I: those of a :class:`~eeruf.typing.Summary`, as spreads.
 
     A spread is None where no geometry has the figure.
 
@@ -129,36 +129,36 @@ class SetOneFigures(Result):
     age_p99_ms: Spread | None
     """The age that 99 % of the last accepted readings do not exceed, in milliseconds."""
     readings_per_s: Spread | None
-    """Accepted readings in a second, all sensors together."""
+    """Accepted readings per second, over all sensors."""
     belief_right: Spread | None
-    """Share of the time in which what was last believed, at most 0.6 s ago, is right."""
+    """Share of the time in which the latest accepted reading, at most 0.6 s old, is right."""
     unknown: Spread | None
-    """The share in which nothing is believed."""
+    """Share of the time without an accepted reading that is at most 0.6 s old."""
     phantom: Spread | None
-    """The share in which it is foreign sound."""
+    """Share of the time in which the latest accepted reading is foreign sound."""
     too_far: Spread | None
-    """The share in which it is an own later echo, or silence where there is an echo."""
+    """Share of the time in which the latest accepted reading is an own later echo, or silence where there is an echo."""
     faint: Spread | None
-    """The share in which it is an own nearer echo: faint but real."""
+    """Share of the time in which the latest accepted reading is an own nearer echo, faint but real."""
     right_echoes_per_s: Spread | None
-    """Accepted echoes that were right in a second, all sensors together."""
+    """Accepted echoes per second that were right, over all sensors."""
     starved: float
     """Mean number of sensors that had fewer than 5 % of their readings accepted."""
     starved_95: tuple[float, float]
     """95 % confidence interval of ``starved``, by bootstrap."""
     blind: float
-    """Mean number of sensors that were right under 5 % of the times they fired."""
+    """Mean number of sensors that were right in fewer than 5 % of their firings."""
     starved_in_part: float
     """Mean number of starved sensors that read right in one phase and not in another."""
     nearer: Latency | None
     """The time until the back wall is read right again when it has come nearer."""
     farther: Latency | None
-    """The time until the wall is read right after it has moved away as far."""
+    """The time until the wall is read right after it has moved away by the same distance."""
     new_step: NewStep | None
     """The time until the wall is read right after it comes nearer for the first time."""
 
 
-# What of a summary is no figure.
+# The fields of a summary that are not figures.
 _NOT_COMPARED = ("method", "readings", "accepted")
 
 
@@ -175,18 +175,18 @@ class AlcoveRun(Result):
     """
 
     seed: int
-    """The alcove's number, which seeds all that is random."""
+    """The alcove's number, the seed of its random numbers."""
     summary: Summary
-    """The figures of the alcove as it is."""
+    """The figures of the unchanged alcove."""
     nearer: tuple[int | None, ...] = field(repr=False)
-    """For each step of the back wall nearer and each sensor, in which period it is read right; None for never."""
+    """The period in which each sensor reads the back wall right, for each step nearer; None for never."""
     farther: tuple[int | None, ...] = field(repr=False)
-    """For each step away and each sensor, in which period it is read right; None for never."""
+    """The period in which each sensor reads the back wall right, for each step away; None for never."""
     new_ms: tuple[float | None, ...] = field(repr=False)
-    """For the first step nearer, after how many milliseconds each sensor reads it right."""
+    """The time after which each sensor reads the first step nearer right, in milliseconds; None for never."""
 
     def figures(self) -> dict[str, float | None]:
-        """Return what :func:`~eeruf.experiments.compare` compares: the summary's figures by name.
+        """Return the figures that :func:`~eeruf.experiments.compare` compares: the summary's, by name.
 
         Example:
             >>> import eeruf
@@ -202,7 +202,7 @@ class AlcoveRun(Result):
 
 @dataclass(frozen=True)
 class PlacingRun(Result):
-    """The result of one placing of Set III under one method; the figures of :class:`SetThreeFigures`.
+    """The result of one placing of Set III under one method, with the figures of :class:`SetThreeFigures`.
 
     Example:
         >>> import eeruf
@@ -214,32 +214,32 @@ class PlacingRun(Result):
     """
 
     seed: int
-    """The placing's number, which seeds all that is random."""
+    """The placing's number, the seed of its random numbers."""
     others_of_accepted: float | None
     """Share of the accepted readings that are another robot's sound; None if none was accepted."""
     others_at_worst: float | None
-    """That share of the sensor that accepts the largest share of it, among those with five accepted readings."""
+    """The largest such share of a single sensor, among sensors with five or more accepted readings."""
     foreign_of_accepted: float | None
     """Share of the accepted readings that are foreign sound."""
     good_lost: float | None
     """Share of the good readings that were not accepted."""
     right_echoes_per_s: float
-    """Accepted echoes that were right in a second, of one robot."""
+    """Accepted echoes of one robot per second that were right."""
     belief_right: float
-    """Share of the time in which what was last believed, at most 0.6 s ago, is right."""
+    """Share of the time in which the latest accepted reading, at most 0.6 s old, is right."""
     unknown: float
-    """The share in which nothing is believed."""
+    """Share of the time without an accepted reading that is at most 0.6 s old."""
     phantom: float
-    """The share in which it is foreign sound."""
+    """Share of the time in which the latest accepted reading is foreign sound."""
     too_far: float
-    """The share in which it is an own later echo, or silence where there is an echo."""
+    """Share of the time in which the latest accepted reading is an own later echo, or silence where there is an echo."""
     faint: float
-    """The share in which it is an own nearer echo: faint but real."""
+    """Share of the time in which the latest accepted reading is an own nearer echo, faint but real."""
     blind: float
-    """Sensors of one robot that were right under 5 % of the times they fired."""
+    """Number of sensors of one robot that were right in fewer than 5 % of their firings."""
 
     def figures(self) -> dict[str, float | None]:
-        """Return what :func:`~eeruf.experiments.compare` compares: the figures by name.
+        """Return the figures that :func:`~eeruf.experiments.compare` compares, by name.
 
         Example:
             >>> import eeruf
@@ -273,19 +273,19 @@ class Difference(Result):
     median: float
     """Median difference."""
     median_95: tuple[float, float] | None
-    """Where the median lies with at least 95 % confidence: the sign test's interval, exact for any distribution. None below
-    six scenes."""
+    """Interval of the median with at least 95 % confidence, from the sign test: exact for any distribution. None with
+    fewer than six scenes."""
     less: int
     """Number of scenes in which the difference is below 0."""
     more: int
-    """Number of scenes in which it is above 0."""
+    """Number of scenes in which the difference is above 0."""
     p_sign: float
     """Two-sided p-value of the exact sign test over the scenes that differ."""
 
 
 @dataclass(frozen=True)
 class SetOne(Table):
-    """The result of ``eeruf.experiments.set_one``; ``to_dict`` is what ``eeruf experiment set-one --json`` prints.
+    """The result of ``eeruf.experiments.set_one``; ``to_dict`` gives what ``eeruf lab experiment set-one --json`` prints.
 
     Example:
         >>> import eeruf
@@ -308,22 +308,22 @@ class SetOne(Table):
     seeds: int
     """Number of geometries."""
     physics: _Physics
-    """Which effects of sound were computed: a preset's name, or each effect."""
+    """The simulated effects of sound: a preset's name, or each effect."""
     sensors: int
     """Number of sensors of the ring."""
     period_us: int
     """The period, in microseconds."""
     periods: int
-    """Number of periods for which each was simulated."""
+    """Number of periods for which each geometry was simulated."""
     methods: Mapping[str, SetOneFigures]
     """The figures of each method by its label, in the order asked for."""
     runs: Mapping[str, list[AlcoveRun]] = field(repr=False)
-    """For each method the result in each alcove, in their order: what :func:`~eeruf.experiments.compare` takes."""
+    """The runs of each method, in the order of the alcoves, as :func:`~eeruf.experiments.compare` takes them."""
 
 
 @dataclass(frozen=True, eq=False)
 class Run(Result):
-    """The outcome of one course of Set II under one method. Equal runs have equal numbers throughout; runs pickle.
+    """The outcome of one course of Set II under one method. Runs are equal if all their numbers are; they pickle.
 
     Example:
         >>> import eeruf
@@ -334,9 +334,9 @@ class Run(Result):
     """
 
     course: int
-    """The course's number: its poles are drawn from it."""
+    """The course's number, from which its poles are drawn."""
     ending: _Ending
-    """``"finished"``, ``"contact"`` (it touched a pole or a wall), or ``"time_out"``."""
+    """The ending: ``"finished"``, ``"contact"`` (the robot touched a pole or a wall), or ``"time_out"``."""
     time_s: float
     """Time for which the robot drove, in seconds."""
     way_m: float
@@ -344,35 +344,35 @@ class Run(Result):
     top_speed_m_s: float
     """The highest speed, in m/s."""
     nearest_m: float
-    """The least distance of its outline from a pole, in metres; infinite if it never came near one."""
+    """The least distance of the robot's outline from a pole, in metres; infinite if it never came near one."""
     readings: int
-    """Number of readings of its sensors."""
+    """Number of readings of the robot's sensors."""
     rejected_readings: int
-    """Number of these that were not accepted."""
+    """Number of readings that were not accepted."""
     wrong_readings: int
-    """Number of these that were accepted and wrong."""
+    """Number of readings that were accepted and wrong."""
     phantom_echoes: int
     """Number of echoes that were entered into the grid where nothing is."""
     phantom_cells: int
-    """Number of cells of the grid that are certain in the end though nothing is there."""
+    """Number of cells of the grid that are certain at the end though nothing is there."""
     poles_passed: int
     """Number of poles that the robot came within 1 m of."""
     poles_unseen: int
-    """Number of these that never had an echo entered into the grid."""
+    """Number of passed poles that never had an echo entered into the grid."""
     track: NDArray[np.float64] = field(repr=False)
     """Poses on the way, every 30 ms: rows of time (s), x, y (m), heading (rad) and speed (m/s); shape (n, 5)."""
     grid: NDArray[np.float64] = field(repr=False)
-    """The cells of 10 cm that are not empty in the end: rows of x, y (m) and certainty, 1 to 15; shape (m, 3)."""
+    """The cells of 10 cm that are not empty at the end: rows of x, y (m) and certainty, 1 to 15; shape (m, 3)."""
     poles: NDArray[np.float64] = field(repr=False)
     """The course's poles: rows of x, y and radius in metres; shape (p, 3)."""
 
     @property
     def seed(self) -> int:
-        """The course's number, which seeds all that is random."""
+        """The course's number, the seed of its random numbers."""
         return self.course
 
     def figures(self) -> dict[str, float | None]:
-        """Return what :func:`~eeruf.experiments.compare` compares: the figures of :class:`SetTwoFigures` for this course.
+        """Return the figures that :func:`~eeruf.experiments.compare` compares: those of :class:`SetTwoFigures` for this course.
 
         ``finished`` and ``contacts`` are 1 or 0. A course without a pole nearby has no ``nearest_m``.
 
@@ -434,7 +434,7 @@ class SetTwoFigures(Result):
     timed_out: int
     """Number of courses in which the robot was stuck, or too slow."""
     mean_speed_m_s: float
-    """Way over time of all courses together, in m/s."""
+    """Total distance divided by total time over all courses, in m/s."""
     top_speed_m_s: float
     """The highest speed in any course, in m/s."""
     nearest_m: float
@@ -444,18 +444,18 @@ class SetTwoFigures(Result):
     rejected: float
     """Share of all readings that were not accepted."""
     phantom_echoes: float
-    """Echoes entered into the grid where nothing is, in each course on average."""
+    """Mean number of echoes per course that were entered into the grid where nothing is."""
     phantom_cells: float
-    """Cells of the grid that are certain in the end though nothing is there, in each course on average."""
+    """Mean number of cells per course that are certain at the end though nothing is there."""
     poles_missed: float
-    """Share of the poles that the robot came within 1 m of that it never saw."""
+    """Share of the poles within 1 m of the robot's way that it never saw."""
     readings_per_s: float
-    """Accepted readings in a second, all sensors together."""
+    """Accepted readings per second, over all sensors."""
 
 
 @dataclass(frozen=True)
 class SetTwo(Table):
-    """The result of ``eeruf.experiments.set_two``; ``to_dict`` is what ``eeruf experiment set-two --json`` prints, and the runs.
+    """The result of ``eeruf.experiments.set_two``; ``to_dict`` gives what ``eeruf lab experiment set-two --json`` prints, and the runs.
 
     Example:
         >>> import eeruf
@@ -478,24 +478,24 @@ class SetTwo(Table):
     pilot: _PilotName
     """The pilot that steered."""
     physics: _Physics
-    """Which effects of sound were computed: a preset's name, or each effect."""
+    """The simulated effects of sound: a preset's name, or each effect."""
     bodies: bool
     """True if robots had bodies."""
     seeds: int
     """Number of courses."""
     second_robot_m: tuple[float, float] | None
-    """Where another robot stood and fired, in metres."""
+    """The place where another robot stood and fired, in metres."""
     speed_m_s: float
     """The platform's highest speed, in m/s."""
     methods: Mapping[str, SetTwoFigures]
     """The figures of each method by its label, in the order asked for."""
     runs: Mapping[str, list[Run]] = field(repr=False)
-    """For each method the runs, in the order of the courses."""
+    """The runs of each method, in the order of the courses."""
 
 
 @dataclass(frozen=True)
 class SpeedStep(Result):
-    """Set II at one top speed.
+    """The result of Set II at one top speed.
 
     Example:
         >>> import eeruf
@@ -510,9 +510,9 @@ class SpeedStep(Result):
     finished_of_all: Mapping[str, float]
     """For each method, the share of all courses that were finished without contact."""
     finished_95: Mapping[str, tuple[float, float]]
-    """95 % confidence interval of that share for each method, by Wilson."""
+    """95 % confidence interval of the finished share for each method, by Wilson."""
     mean_speed_m_s: Mapping[str, float]
-    """For each method, way over time of all courses together, in m/s."""
+    """Total distance divided by total time over all courses, for each method, in m/s."""
 
 
 @dataclass(frozen=True)
@@ -532,17 +532,17 @@ class SpeedSweep(Table):
     pilot: _PilotName
     """The pilot that steered."""
     physics: _Physics
-    """Which effects of sound were computed: a preset's name, or each effect."""
+    """The simulated effects of sound: a preset's name, or each effect."""
     bodies: bool
     """True if robots had bodies."""
     seeds: int
     """Number of courses."""
     second_robot_m: tuple[float, float] | None
-    """Where another robot stood and fired, in metres."""
+    """The place where another robot stood and fired, in metres."""
     steps: tuple[SpeedStep, ...]
     """The outcome at each speed."""
     borne_m_s: Mapping[str, float | None]
-    """For each method the highest of the speeds at which 95 % of the courses were finished; None if there is none."""
+    """For each method, the highest speed at which 95 % of the courses were finished; None if there is none."""
 
     def _rows(self) -> list[list[str]]:
         speeds = [f"{step.speed_m_s:g} m/s, finished %" for step in self.steps]
@@ -567,30 +567,30 @@ class SetThreeFigures(Result):
     others_of_accepted: Spread | None
     """Share of the accepted readings that are another robot's sound."""
     others_at_worst: Spread | None
-    """That share of the sensor that accepts the largest share of it, among those with five accepted readings."""
+    """The largest such share of a single sensor, among sensors with five or more accepted readings."""
     foreign_of_accepted: Spread | None
-    """Share of the accepted readings that are foreign sound, of the robot's other sensors or an earlier firing too."""
+    """Share of the accepted readings that are foreign sound, also of the robot's other sensors or an earlier firing."""
     good_lost: Spread | None
     """Share of the good readings that were not accepted."""
     right_echoes_per_s: Spread | None
-    """Accepted echoes that were right in a second."""
+    """Accepted echoes per second that were right."""
     belief_right: Spread | None
-    """Share of the time in which what was last believed, at most 0.6 s ago, is right."""
+    """Share of the time in which the latest accepted reading, at most 0.6 s old, is right."""
     unknown: Spread | None
-    """The share in which nothing is believed."""
+    """Share of the time without an accepted reading that is at most 0.6 s old."""
     phantom: Spread | None
-    """The share in which it is foreign sound."""
+    """Share of the time in which the latest accepted reading is foreign sound."""
     too_far: Spread | None
-    """The share in which it is an own later echo, or silence where there is an echo."""
+    """Share of the time in which the latest accepted reading is an own later echo, or silence where there is an echo."""
     faint: Spread | None
-    """The share in which it is an own nearer echo: faint but real."""
+    """Share of the time in which the latest accepted reading is an own nearer echo, faint but real."""
     blind: Spread | None
-    """Sensors that were right under 5 % of the times they fired."""
+    """Number of sensors that were right in fewer than 5 % of their firings."""
 
 
 @dataclass(frozen=True)
 class SetThreeBrief(Result):
-    """The figures by which groups of placings are compared.
+    """The figures for comparing groups of placings.
 
     Example:
         >>> import eeruf
@@ -603,7 +603,7 @@ class SetThreeBrief(Result):
     others_of_accepted: Spread | None
     """Share of the accepted readings that are another robot's sound."""
     belief_right: Spread | None
-    """Share of the time in which what was last believed, at most 0.6 s ago, is right."""
+    """Share of the time in which the latest accepted reading, at most 0.6 s old, is right."""
 
 
 @dataclass(frozen=True)
@@ -619,11 +619,11 @@ class SetThreeGroup(Result):
     """
 
     placings: int
-    """Number of these placings."""
+    """Number of placings in the group."""
     methods: Mapping[str, SetThreeBrief]
-    """By name, over these placings."""
+    """The figures of each method by its label, over these placings."""
     place: Literal["corridor", "hall"] | None = None
-    """Where they are; None for anywhere."""
+    """The place; None for all places."""
     arrangement: Literal["standing", "meeting", "following"] | None = None
     """The robots' arrangement; None for any."""
     robots: int | None = None
@@ -632,7 +632,7 @@ class SetThreeGroup(Result):
 
 @dataclass(frozen=True)
 class SetThree(Table):
-    """Set III over many placings of robots of one make.
+    """The result of Set III over many placings of robots of the same make.
 
     Example:
         >>> import eeruf
@@ -653,14 +653,14 @@ class SetThree(Table):
     seeds: int
     """Number of placings."""
     physics: _Physics
-    """Which effects the rooms had."""
+    """The simulated effects of sound: a preset's name, or each effect."""
     periods: int
-    """Number of periods for which each was simulated."""
+    """Number of periods for which each placing was simulated."""
     methods: Mapping[str, SetThreeFigures]
-    """By name, over all placings."""
+    """The figures of each method by its label, over all placings."""
     groups: tuple[SetThreeGroup, ...]
-    """The placings by place and arrangement, and by the number of robots."""
+    """Groups of placings, by place and arrangement, and by the number of robots."""
     runs: Mapping[str, list[PlacingRun]] = field(repr=False)
-    """For each method the result in each placing, in their order."""
+    """The runs of each method, in the order of the placings."""
     height: Literal["flat", "room"] = "flat"
     """``"room"`` if the rings heard floor and ceiling."""

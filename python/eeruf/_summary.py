@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 def _plain(value: object) -> object:
-    """Convert to numbers, texts, lists and dicts."""
+    """Convert to numbers, strings, lists and dicts."""
     if (to_dict := getattr(value, "to_dict", None)) is not None:
         return to_dict()
     if isinstance(value, dict):
@@ -111,26 +111,26 @@ class Summary(Result):
     wrong_before_filter: float
     """Share of all readings that would have been wrong without any filter."""
     belief_right: float
-    """Share of the time in which what was last believed, at most 0.6 s ago, is right."""
+    """Share of the time in which the latest accepted reading, at most 0.6 s old, is right."""
     unknown: float
-    """The share in which nothing is believed."""
+    """Share of the time without an accepted reading that is at most 0.6 s old."""
     phantom: float
-    """The share in which it is foreign sound."""
+    """Share of the time in which the latest accepted reading is foreign sound."""
     too_far: float
-    """The share in which it is an own later echo, or silence where there is an echo."""
+    """Share of the time in which the latest accepted reading is an own later echo, or silence where there is an echo."""
     faint: float
-    """The share in which it is an own nearer echo: faint but real."""
+    """Share of the time in which the latest accepted reading is an own nearer echo, faint but real."""
     right_echoes_per_s: float
-    """Accepted echoes that were right in a second, all sensors together."""
+    """Accepted echoes per second that were right, over all sensors."""
     age_ms: float
     """Median age of a sensor's last accepted reading, in milliseconds."""
     age_p99_ms: float
-    """The 99th percentile of that age, in milliseconds."""
+    """99th percentile of the age of a sensor's last accepted reading, in milliseconds."""
     readings_per_s: float
-    """Accepted readings in a second, all sensors together."""
+    """Accepted readings per second, over all sensors."""
     starved: int
     """Number of sensors that had fewer than 5 % of their readings accepted."""
     blind: int
-    """Number of sensors that were right under 5 % of the times they fired."""
+    """Number of sensors that were right in fewer than 5 % of their firings."""
     starved_in_part: int
     """Number of starved sensors that read right in one phase and not in another."""

@@ -10,7 +10,7 @@ if TYPE_CHECKING:
 
 
 class HeardPaths(TypedDict):
-    """Every path of some reading, as in :attr:`Readings.paths`."""
+    """The paths of all readings, as in :attr:`Readings.paths`."""
 
     emitter_robot: NDArray[np.int64]
     emitter: NDArray[np.int64]

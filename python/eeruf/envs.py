@@ -1,12 +1,12 @@
-"""The courses of Set II as environments of Gymnasium: learn to drive by what a ring believes.
+"""The courses of Set II as environments of Gymnasium: learn to drive by the readings that a ring accepts.
 
 Needs Gymnasium 1.1 or later (``pip install eeruf[gymnasium]``). Importing this module registers ``eeruf/Course-v0``. The robot
-starts at the near end of a lab with poles and is to reach the line 8.2 m ahead within 40 s.
+starts at the near end of a lab with poles and must reach the line 8.2 m ahead within 40 s.
 
 An observation has, for a ring of K sensors, K ranges in metres (those of the latest accepted readings; 10 m where nothing
 was in range or nothing is known), K ages of these in seconds (at most 10 s), the distance to the finishing line in metres,
 the place across in metres from the lab's middle, and the heading in radians. An action is a speed from 0 to 1 m/s and a rate of turn
-from -1 to 1, of 1.5 rad/s. The reward is the way gained towards the line in metres, 10 for reaching it, and -10 for a contact.
+from -1 to 1, in units of 1.5 rad/s. The reward is the progress towards the line in metres, 10 for reaching it, and -10 for a contact.
 ``info["wrong"]`` is the share of sensors whose latest accepted reading is wrong, which only a simulator knows.
 
 Courses below 2,000 are for learning; report on those from 20,000 on.
@@ -58,12 +58,12 @@ class CourseVectorEnv(VectorEnv[NDArray[np.float32], NDArray[np.float32], NDArra
     """Many courses at once, stepped on all cores. A finished course is replaced by another one in the same step.
 
     Args:
-        num_envs: how many, 1 or more.
-        method: as of ``eeruf.sim.Batch``.
+        num_envs: how many courses to drive at once, 1 or more.
+        method: as for ``eeruf.sim.Batch``.
         numbers: the courses to draw from.
         step_s: the time that a step takes, in seconds.
-        physics: as the argument of ``eeruf.sim.Scene``.
-        threads: as of ``eeruf.sim.Batch``.
+        physics: as for ``eeruf.sim.Scene``.
+        threads: as for ``eeruf.sim.Batch``.
 
     Example:
         >>> import gymnasium
@@ -75,7 +75,7 @@ class CourseVectorEnv(VectorEnv[NDArray[np.float32], NDArray[np.float32], NDArra
 
     """
 
-    metadata = {"autoreset_mode": AutoresetMode.SAME_STEP}  # noqa: RUF012 - as Gymnasium wants it
+    metadata = {"autoreset_mode": AutoresetMode.SAME_STEP}  # noqa: RUF012 - as Gymnasium requires
 
     def __init__(
         self,
@@ -146,13 +146,13 @@ class CourseVectorEnv(VectorEnv[NDArray[np.float32], NDArray[np.float32], NDArra
 
 
 class CourseEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
-    """One course at a time; :class:`CourseVectorEnv` of one.
+    """One course at a time: a :class:`CourseVectorEnv` with a single world.
 
     Args:
-        method: as of ``eeruf.sim.Batch``.
+        method: as for ``eeruf.sim.Batch``.
         numbers: the courses to draw from.
         step_s: the time that a step takes, in seconds.
-        physics: as the argument of ``eeruf.sim.Scene``.
+        physics: as for ``eeruf.sim.Scene``.
 
     Example:
         >>> import gymnasium
@@ -182,7 +182,7 @@ class CourseEnv(gymnasium.Env[NDArray[np.float32], NDArray[np.float32]]):
     ) -> tuple[NDArray[np.float32], dict[str, Any]]:
         """Start over, in another course."""
         super().reset(seed=seed)
-        # What this one draws decides what is drawn beneath.
+        # The inner environment is seeded from this one's generator.
         observed, info = self._one.reset(seed=int(self.np_random.integers(2**31)))
         return observed[0], {"wrong": float(info["wrong"][0])}
 

@@ -1,8 +1,8 @@
-"""The paper's experiments (Sec. 4): robots that stand before walls, a robot that drives between poles; and robots of one make.
+"""The paper's experiments (Sec. 4), robots in front of walls and a robot among poles; and several robots of the same make.
 
-``docs/log/experiments.md`` explains the tables, and where the paper promises too much; ``eeruf experiment`` prints
-the same ones. A method is a name or a ``eeruf.sim.Method``, which may have a filter or a firing
-of your own. Parameters are tuned on seeds below 2,000; what is reported starts at 20,000.
+``docs/log/experiments.md`` explains the tables, and where the paper promises too much; ``eeruf lab experiment``
+prints the same tables. A method is a name or a ``eeruf.sim.Method``, which may have a filter or a firing
+of your own. Parameters are tuned on seeds below 2,000; reports use seeds from 20,000 on.
 """
 
 from __future__ import annotations
@@ -45,14 +45,14 @@ _SPEEDS_M_S = (0.5, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0)
 
 
 class Scenes:
-    """Numbered scenes of an experiment, each made when it is asked for; slices are such scenes again.
+    """A sequence of numbered scenes of an experiment, each made on demand; its slices are such sequences too.
 
-    A scene's ``seed`` is its number. They compare and pickle.
+    A scene's ``seed`` is its number. Sequences compare and pickle.
 
     Args:
         kind: ``"alcove"`` or ``"course"``.
         numbers: the scenes' numbers.
-        physics: as the argument of ``eeruf.sim.Scene``.
+        physics: as for ``eeruf.sim.Scene``.
 
     Example:
         >>> from eeruf import experiments
@@ -70,12 +70,12 @@ class Scenes:
         ends = (numbers[0], numbers[-1]) if isinstance(numbers, range) and numbers else (0,)
         if not isinstance(numbers, range) or not 0 <= min(ends) <= max(ends) < 2**62:
             raise _eeruf.EerufError(f"numbers = {numbers!r:.60}; expected a range of numbers from 0 to 2**62 - 1")
-        # Errors in the effects come at once.
+        # Invalid effects raise an error at once.
         _eeruf._alcove(0, physics)
         self.kind, self.numbers, self.physics = kind, numbers, physics
 
     def __len__(self) -> int:
-        """Return how many there are."""
+        """Return the number of scenes."""
         return len(self.numbers)
 
     @overload
@@ -100,7 +100,7 @@ class Scenes:
         return (self.kind, self.numbers, self.physics) == (other.kind, other.numbers, other.physics)
 
     def __hash__(self) -> int:
-        """Return a hash of the numbers."""
+        """Return a hash of the kind and the numbers."""
         return hash((self.kind, self.numbers))
 
     def __repr__(self) -> str:
@@ -111,16 +111,16 @@ class Scenes:
 def alcoves(first: int = _FIRST, n: int = 200, *, physics: _Physics = "default") -> Scenes:
     """Return the alcoves of Set I as scenes with the robot in place; a scene's ``seed`` is its number.
 
-    ``eeruf.sim.simulate`` reads in one exactly what :func:`set_one` reads by the same method; but for ``multi_echo``, for which that
-    sets ``t_delta_us`` to 200.
+    In each, ``eeruf.sim.simulate`` gives exactly the readings of :func:`set_one` with the same method, except ``multi_echo``, for
+    which :func:`set_one` sets ``t_delta_us`` to 200.
 
     Args:
         first: the first alcove's number.
-        n: how many.
-        physics: as the argument of ``eeruf.sim.Scene``.
+        n: how many alcoves.
+        physics: as for ``eeruf.sim.Scene``.
 
     Raises:
-        EerufError: a number is below 0, or there are no such effects.
+        EerufError: a number is below 0, or the effects are invalid.
 
     Example:
         >>> from eeruf import experiments, sim
@@ -137,16 +137,16 @@ def alcoves(first: int = _FIRST, n: int = 200, *, physics: _Physics = "default")
 def courses(first: int = _FIRST, n: int = 100, *, physics: _Physics = "default") -> Scenes:
     """Return the courses of Set II as scenes with the robot at the start; a scene's ``seed`` is its number.
 
-    Drive in one with ``eeruf.sim.Simulation``. Sound is followed for two bounces at walls and poles, where :func:`set_two` follows
-    one that meets a pole for one bounce only, for speed.
+    Drive through one with ``eeruf.sim.Simulation``. Sound is followed for two bounces at walls and poles; for speed,
+    :func:`set_two` follows sound that meets a pole for one bounce only.
 
     Args:
         first: the first course's number.
-        n: how many.
-        physics: as the argument of ``eeruf.sim.Scene``.
+        n: how many courses.
+        physics: as for ``eeruf.sim.Scene``.
 
     Raises:
-        EerufError: a number is below 0, or there are no such effects.
+        EerufError: a number is below 0, or the effects are invalid.
 
     Example:
         >>> from eeruf import experiments
@@ -167,21 +167,21 @@ def rooms(
     physics: _Physics = "default",
     height: _Height = "room",
 ) -> list[_eeruf.Scene]:
-    r"""Return rooms of one kind as scenes with the robot of a ring file in its place; a scene's ``seed`` is its number.
+    r"""Return rooms of one kind as scenes with the robot of a ring file in place; a scene's ``seed`` is its number.
 
     These are the rooms in which ``eeruf design`` judges ways of firing (``docs/how-to/design.md``).
 
     Args:
-        ring: the path of a ring file. Without ``poses`` a ring stands evenly all round, a line 15 degrees apart.
+        ring: the path of a ring file. Without ``poses``, a ring's sensors are spread evenly, and a line's stand 15 degrees apart.
         first: the first room's number.
-        n: how many.
-        kind: which rooms; in ``"meeting"`` a second robot of the same make stands near.
+        n: how many rooms.
+        kind: the kind of rooms; in ``"meeting"`` a second robot of the same make stands nearby.
         driving: whether the robot drives, at the file's ``speed_m_s`` or 0.3 m/s.
-        physics: as the argument of ``eeruf.sim.Scene``.
-        height: as the argument of ``eeruf.sim.Scene``.
+        physics: as for ``eeruf.sim.Scene``.
+        height: as for ``eeruf.sim.Scene``.
 
     Raises:
-        EerufError: a number is below 0, the file cannot be read, or there are no such rooms or effects.
+        EerufError: a number is below 0, the file cannot be read, or the kind or the effects are invalid.
 
     Example:
         >>> import pathlib, tempfile
@@ -210,20 +210,20 @@ def recommend(
 
     Args:
         ring: the path of a ring file.
-        rooms: scenes of your own by their names, in each of which the ring stands where the first robot does; by default rooms of
+        rooms: scenes of your own by name, in each of which the ring takes the place of the first robot; by default rooms of
             eight kinds.
         places: rooms of each kind, 1 to 1,000.
         first: the number of the first room of each kind; ways are chosen on numbers below 2,000, and reported from 20,000 on.
         driving: whether the robot drives.
-        wrong: the largest share of foreign sound in what is believed, of a way that is recommended.
-        cost: whether to say what each kind of way costs, as ``--cost`` does; takes minutes, not with ``rooms``.
+        wrong: the largest share of foreign sound among the accepted readings of a way that is recommended.
+        cost: whether to compute the cost of each kind of way, as ``--cost`` does; takes minutes, and excludes ``rooms``.
         progress: True for a bar (tqdm if it is installed), or a callable that takes the share done and a text.
 
     Returns:
-        ``recommended``, the name of the way; ``keeps``, whether it keeps to the limits in each kind of room; ``assumed``, where the file
-        is silent; ``ways``, each with ``way``, ``title`` and ``rooms``, its figures by kind; ``elsewhere``, the same under other gain
-        and height; ``by_cost``, if asked for, the kinds of ways by how soon the ring sees what appears, under the conditions that
-        the file names.
+        A dict: ``recommended``, the name of the way; ``keeps``, whether it keeps to the limits in each kind of room; ``assumed``, the
+        assumptions where the file is silent; ``ways``, each with ``way``, ``title`` and ``rooms``, its figures by kind of room;
+        ``elsewhere``, the ways with another gain and height; and with ``cost`` also ``by_cost``, the kinds of ways in the order in
+        which the ring sees a new object soonest, under the conditions in the file.
 
     Raises:
         EerufError: a number is out of range, or the file cannot be read or does not say where its sensors are.
@@ -289,16 +289,16 @@ def set_one(
     tune: bool = False,
     progress: _Progress = None,
 ) -> SetOne:
-    """Set I: eight sensors before three walls at right angles, by every method, in many random alcoves.
+    """Run Set I: eight sensors in front of three walls at right angles, by every method, in many random alcoves.
 
     Runs on all cores; Ctrl-C ends it.
 
     Args:
         seeds: how many alcoves, 1 to 100,000.
-        readings: about how many readings of each alcove and method, 1 or more.
-        methods: names of ``eeruf.sim.METHODS`` and ``eeruf.sim.Method``; by default all but those that fire as sketches and modules do.
+        readings: the approximate number of readings for each alcove and method, 1 or more.
+        methods: names of ``eeruf.sim.METHODS`` and ``eeruf.sim.Method``; by default all but those that fire like sketches and modules.
         first: the first alcove's number.
-        physics: as the argument of ``eeruf.sim.Scene``.
+        physics: as for ``eeruf.sim.Scene``.
         tune: whether parameters are chosen by the result. Seeds from 20,000 on are then refused: they are for reports.
         progress: True for a bar (tqdm if it is installed), or a callable that takes the share done and a text.
 
@@ -306,7 +306,7 @@ def set_one(
         The figures of each method, which do not depend on the number of threads.
 
     Raises:
-        EerufError: a number is out of range, or there is no such method; there are no methods, two of one label, or ``tune``
+        EerufError: a number is out of range, or a method is unknown; there are no methods, or two with the same label; or ``tune``
             with a seed for reports.
 
     Example:
@@ -337,29 +337,29 @@ def set_two(
     tune: bool = False,
     progress: _Progress = None,
 ) -> SetTwo:
-    """Set II: a LabMate drives through random courses of 8 mm poles about 1.6 m apart, steered by what its ring reads.
+    """Run Set II: a LabMate drives through random courses of 8 mm poles about 1.6 m apart, steered by its ring's readings.
 
-    Accepted readings fill a histogram grid (HIMM), the vector field histogram steers. Every method drives the same courses,
+    Accepted readings fill a histogram grid (HIMM), and the vector field histogram steers. Every method drives the same courses,
     for at most 40 s each. Runs on all cores; Ctrl-C ends it.
 
     Args:
         seeds: how many courses, 1 to 100,000.
         methods: names of ``eeruf.sim.METHODS`` and ``eeruf.sim.Method``; by default sequential, far_groups, conventional, comparison, eeruf,
             eeruf_best, adaptive and multi_echo.
-        second_robot: where another robot stands that fires 24 times in 80 ms: ``"behind"`` the start, ``"ahead"`` in the
+        second_robot: the place of another robot, which fires 24 times in 80 ms: ``"behind"`` the start, ``"ahead"`` in the
             reflective corner that all sensors face, or a point (x, y) in metres of the lab, which is 10 m by 6 m.
         speed_m_s: the platform's highest speed, 0.1 to 5 m/s.
-        odometry: whether the robot hands its ring the changes that its own motion should cause.
+        odometry: whether the robot tells its ring the changes of readings to expect from its own motion.
         t_delta_us: readings that differ by no more are near-identical; by default 150 with odometry and 500 without.
         first: the first course's number.
-        pilot: who steers: ``"own"``, each method's own pilot, found by the same search for each; ``"shared"``, one for all that
-            an earlier search found by the score of eeruf; ``"published"`` and ``"published-gro"``, the published settings
+        pilot: the pilot that steers: ``"own"``, one for each method, found by the same search; ``"shared"``, one for all methods,
+            which an earlier search found by the score of eeruf; ``"published"`` and ``"published-gro"``, the published settings
             without and with the growth rate operator.
-        odometry_noise: whether wheels slip and are not measured quite right, so that the robot is off by some decimetre in the
-            end; otherwise it knows exactly where it is.
-        bodies: whether robots have bodies: the platform its square, with the ring on its edge, the second robot a disc, which is
-            then an obstacle to sound and to the platform. The pilots were tuned without.
-        physics: as the argument of ``eeruf.sim.Scene``.
+        odometry_noise: whether wheels slip and are measured with errors, so that the estimated place is off by a decimetre or so
+            at the end; otherwise it is exact.
+        bodies: whether robots have bodies: a square for the platform, with the ring on its edge, and a disc for the second robot,
+            an obstacle to sound and to the platform. The pilots were tuned without bodies.
+        physics: as for ``eeruf.sim.Scene``.
         tune: whether parameters are chosen by the result. Seeds from 20,000 on are then refused: they are for reports.
         progress: True for a bar (tqdm if it is installed), or a callable that takes the share done and a text.
 
@@ -368,8 +368,8 @@ def set_two(
         of threads.
 
     Raises:
-        EerufError: a number is out of range, or there is no such method; there are no methods, two of one label, ``tune`` with
-            a seed for reports, or the second robot stands where it cannot.
+        EerufError: a number is out of range, or a method is unknown; there are no methods, or two with the same label; ``tune``
+            with a seed for reports; or an invalid place for the second robot.
 
     Example:
         >>> import eeruf
@@ -396,19 +396,19 @@ def set_three(
     tune: bool = False,
     progress: _Progress = None,
 ) -> SetThree:
-    """Set III: two to six robots with the same ring stand, meet or follow each other in a corridor or a hall.
+    """Run Set III: two to six robots with the same ring stand, meet or follow each other in a corridor or a hall.
 
-    Nothing but the phases and drifts of their clocks tells them apart. As rings are fired today (``in_turn``, ``arrays``, ``groups``,
-    ``sync_line``, ``free_running``, ``table``) they have two arrays of six, four groups of three, and modules that rest for 65 ms.
+    They differ only in the phases and drifts of their clocks. The methods of today's rings (``in_turn``, ``arrays``, ``groups``,
+    ``sync_line``, ``free_running``, ``table``) use two arrays of six, four groups of three, and modules that rest for 65 ms.
     Runs on all cores; Ctrl-C ends it.
 
     Args:
         seeds: how many placings, 1 to 100,000.
         methods: names of ``eeruf.sim.METHODS`` and ``eeruf.sim.Method``; by default simultaneous, sequential, sequential_votes, dither, eeruf and flow.
-        periods: of 100 ms, for which each placing is simulated, 10 to 100,000.
+        periods: the number of periods of 100 ms for which each placing is simulated, 10 to 100,000.
         first: the first placing's number.
-        physics: as the argument of ``eeruf.sim.Scene``.
-        height: as the argument of ``eeruf.sim.Scene``.
+        physics: as for ``eeruf.sim.Scene``.
+        height: as for ``eeruf.sim.Scene``.
         tune: whether parameters are chosen by the result. Seeds from 20,000 on are then refused: they are for reports.
         progress: True for a bar (tqdm if it is installed), or a callable that takes the share done and a text.
 
@@ -416,7 +416,7 @@ def set_three(
         The figures of each method, which do not depend on the number of threads.
 
     Raises:
-        EerufError: a number is out of range, or there is no such method; there are no methods, two of one label, or ``tune``
+        EerufError: a number is out of range, or a method is unknown; there are no methods, or two with the same label; or ``tune``
             with a seed for reports.
 
     Example:
@@ -446,11 +446,11 @@ def speed_sweep(
     tune: bool = False,
     progress: _Progress = None,
 ) -> SpeedSweep:
-    """Set II at several top speeds: which speed each method sustains. Ctrl-C ends it.
+    """Run Set II at several top speeds, to find the speed that each method sustains. Ctrl-C ends it.
 
     Args:
         speeds_m_s: the platform's highest speeds, each 0.1 to 5 m/s.
-        seeds: as in :func:`set_two`, and so all others.
+        seeds: as in :func:`set_two`.
         methods: as in :func:`set_two`.
         second_robot: as in :func:`set_two`.
         odometry: as in :func:`set_two`.
@@ -464,11 +464,11 @@ def speed_sweep(
         progress: as in :func:`set_two`.
 
     Returns:
-        What came of it at each speed, and by method the highest speed at which 95 % of the courses are finished.
+        The outcome at each speed, and for each method the highest speed at which 95 % of the courses are finished.
 
     Raises:
-        EerufError: a number is out of range, or there is no such method; there are no methods, two of one label, ``tune`` with
-            a seed for reports, or the second robot stands where it cannot.
+        EerufError: a number is out of range, or a method is unknown; there are no methods, or two with the same label; ``tune``
+            with a seed for reports; or an invalid place for the second robot.
 
     Example:
         >>> import eeruf

@@ -1,8 +1,8 @@
 """Logs of robots: the ranges of bags, MCAP and CSV files, and findings about a ring from its log of firings.
 
 Everything is read by the same code as ``eeruf logs``, ``eeruf replay``, ``eeruf diagnose`` and ``eeruf survey``;
-docs/how-to/logs.md lists the formats. A log is a path, a file object, or whatever fsspec opens, as
-``"s3://bucket/drive.mcap"``; of a ROS 2 bag's folder in such a place the URL ends with ``/``, and it is copied first.
+docs/how-to/logs.md lists the formats. A log is a path, a file object, or a URL that fsspec opens, such as
+``"s3://bucket/drive.mcap"``. The URL of a ROS 2 bag's folder ends with ``/``; the folder is copied first.
 
 Example:
     >>> import eeruf
@@ -85,10 +85,10 @@ class Agree:
 class Crosstalk:
     """A verdict on whether the sensors of a log read each other's sound; docs/how-to/logs.md says how it is found.
 
-    ``verdict`` is ``"crosstalk"``, ``"none seen"`` or ``"cannot tell"``, for ``reasons``; ``fooled`` are sensors that read foreign sound,
-    ``pairs`` those that read each other's. ``record`` says what to record if the log cannot tell, ``suspects`` are sensors that may be
-    fooled, each with the one whose sound it may read or None; ``notes`` are about single sensors. ``answer`` says it all in words, as
-    ``eeruf logs`` prints it.
+    ``verdict`` is ``"crosstalk"``, ``"none seen"`` or ``"cannot tell"``, and ``reasons`` says why. ``fooled`` are the sensors that read
+    foreign sound, ``pairs`` those that read each other's, and ``suspects`` those that may be fooled, each with the sensor whose sound
+    it may read, or None. ``record`` says what to record if the log cannot tell, and ``notes`` are about single sensors. ``answer`` is
+    all this in words, as ``eeruf logs`` prints it.
 
     Example:
         >>> import eeruf, io
@@ -112,11 +112,11 @@ class Crosstalk:
 class Ranges(_Columns):
     """The ranges of a log: arrays of equal length, in the order in which they were recorded.
 
-    ``sensor`` counts through ``names`` (also ``topics`` and ``frames``), ``at_ns`` is the header's time in nanoseconds, and -1
+    ``sensor`` is an index into ``names``, ``topics`` and ``frames``; ``at_ns`` is the header's time in nanoseconds, or -1
     where there is none. ``range_m`` is ``inf`` without an echo and ``-inf`` for too close, as in REP 117. ``variance`` is NaN where the
     message has none. ``damage`` says what could not be read, ``skipped`` which topics were left out, and why. ``form`` is the form
     of the file, ``guesses`` are triples of what was guessed, the guess, and the options of ``eeruf logs`` that override it;
-    ``warnings`` name values that seem wrong. ``firing`` is how the sensors fire, by the times: ``at once``, ``in turn``,
+    ``warnings`` name values that seem wrong. ``firing`` is how the sensors fire according to the times: ``at once``, ``in turn``,
     ``constant lags``, ``alternating``, ``several lags``, ``flow`` or ``unknown``; ``proves`` says what agreement proves for it, and
     ``crosstalk`` whether sensors read each other's sound.
 
@@ -153,10 +153,10 @@ class Ranges(_Columns):
         """Return the times from firing to echo in microseconds; NaN without an echo, and for too close.
 
         Args:
-            speed_of_sound: in m/s, above 0.
+            speed_of_sound: the speed of sound in m/s, above 0.
 
         Raises:
-            EerufError: no such speed.
+            EerufError: an invalid speed.
 
         Example:
             >>> import eeruf, pathlib, tempfile
@@ -180,11 +180,11 @@ class Ranges(_Columns):
 
 @dataclass(frozen=True, eq=False)
 class Checked:
-    """The answer of :func:`check`; as text, in words with what to do next.
+    """The answer of :func:`check`; as text, it says in words what was found and what to do next.
 
-    ``verdict`` is ``"crosstalk"``, ``"none seen"`` or ``"cannot tell"``, ``concerns`` the names of the sensors that read another's
-    sound or may do so, and ``sensors`` has for each name its ``readings``, ``echoes``, ``nearest_m`` and ``farthest_m``. ``log`` is what
-    was read, with all guesses.
+    ``verdict`` is ``"crosstalk"``, ``"none seen"`` or ``"cannot tell"``, ``concerns`` are the names of the sensors that read
+    another's sound or may do so, and ``sensors`` has ``readings``, ``echoes``, ``nearest_m`` and ``farthest_m`` for each name. ``log``
+    has the readings, with all guesses.
 
     Example:
         >>> import eeruf
@@ -203,10 +203,10 @@ class Checked:
         return self.log.crosstalk.answer
 
     def figure(self, *, ax: Axes | None = None) -> Axes:
-        """Draw the ranges of each sensor over time, or over its readings where the log has no times; those concerned in vermilion.
+        """Draw the ranges of each sensor over time, or over its readings if the log has no times; ``concerns`` are in vermilion.
 
         Args:
-            ax: where to draw.
+            ax: the axes to draw into; new ones by default.
 
         Example:
             >>> import eeruf
@@ -235,11 +235,10 @@ class Checked:
 
 @dataclass(frozen=True, eq=False)
 class Judged(Ranges):
-    """The ranges of a log, and what a judge made of them: ``kind``, indices into ``eeruf.KINDS``, -1 for what is no number.
+    """The ranges of a log with a judge's verdicts: ``kind``, indices into ``eeruf.KINDS``, -1 for a non-number.
 
-    Of each sensor ``gaps`` counts pauses above 1 s and five usual ones, ``backwards`` readings whose time is before
-    that of the
-    one before; what comes after either is compared with nothing before.
+    For each sensor ``gaps`` counts pauses longer than 1 s and than five usual ones, and ``backwards`` counts readings whose time is
+    before that of the previous one. A reading after either is not compared with earlier ones.
 
     Example:
         >>> import eeruf, io
@@ -263,7 +262,7 @@ class Firings(_Columns):
 
     ``t_echo_us`` is the raw time from firing to the first edge, NaN without one; ``rejected`` is 1 if the ring rejected the reading,
     0 if not, -1 if the log does not say; ``sends`` is false where a sensor only listened. ``clock`` names the clock of ``fired_us``,
-    ``damage`` says what of the file could not be read.
+    ``damage`` says which parts could not be read.
 
     Example:
         >>> import eeruf
@@ -297,19 +296,19 @@ class Firings(_Columns):
         rejected: ArrayLike | None = None,
         sends: ArrayLike | None = None,
     ) -> Firings:
-        """Make a log of arrays, as of ``sim.Readings`` or of a data frame's columns.
+        """Make a log from arrays, such as those of ``sim.Readings`` or the columns of a data frame.
 
         Args:
             sensor: the sensor, from 0.
             fired_us: when it fired, in microseconds of one clock.
             period: the period, from 0.
             phase: the phase, from 0.
-            t_echo_us: from firing to the first edge, NaN without one.
+            t_echo_us: the time from firing to the first edge, NaN without one.
             rejected: 1 if the ring rejected the reading, 0 if not, -1 if that is not known.
             sends: false where a sensor only listened.
 
         Raises:
-            EerufError: a column that is no array of such numbers with one dimension.
+            EerufError: a column is not a one-dimensional array of such numbers.
 
         """
         import numpy as np
@@ -334,11 +333,11 @@ class Diagnosis:
     """A diagnosis of a ring from its log.
 
     ``paths`` are columns of equal length, by receiver, best supported first; a sensor's own echo is a path from itself. For each
-    firing ``sender`` is whose sound its reading is, -1 where that is not sure, ``travel_us`` how long it travelled, ``sure`` how sure
-    that is. ``faults`` are ``("deaf", [sensor])``: others hear its sound, and it hears nothing. Sensors in ``silent`` hear nothing, and
-    the log cannot tell why. ``moved`` is true if the robot moved; then a path is a line of a second, of which ``paths["rate_us_s"]`` is
-    the slope.
-    ``most_offsets`` is at how many offsets two firings stand to each other at most; below about five nothing can be named.
+    firing, ``sender`` is the sensor whose sound was read, or -1 if that is unsure, ``travel_us`` is the sound's travel time, and ``sure``
+    the certainty of the sender. ``faults`` are ``("deaf", [sensor])``: others hear its sound, but it hears nothing. Sensors in ``silent``
+    hear nothing, and the log cannot tell why. ``moved`` is true if the robot moved; a path is then a line over one second, with the
+    slope ``paths["rate_us_s"]``.
+    ``most_offsets`` is the largest number of time offsets between the firings of two sensors; below about five, no sender can be named.
 
     Example:
         >>> import eeruf
@@ -362,7 +361,7 @@ class Diagnosis:
 class Surveyed:
     """The result of a measuring run.
 
-    ``paths`` as in :class:`Diagnosis`; ``conflicts`` are ``(x, y, us)``: pairs that hear each other in time, and the longest such
+    ``paths`` is as in :class:`Diagnosis`; ``conflicts`` are ``(x, y, us)``: pairs that hear each other in time, and the longest such
     travel time. ``[(x, y) for x, y, _ in conflicts]`` is a ``layout`` for :func:`eeruf.design`.
 
     Example:
@@ -401,17 +400,17 @@ def read_log(
     Args:
         log: a path, a URL or a file object.
         time: the column with the time.
-        time_unit: its unit.
-        ranges: the columns with ranges; if none is given, those that a name or a unit calls so.
-        range_unit: their unit; ``us`` are microseconds from firing to echo.
-        sensor: the column that says whose reading a row is.
-        speed_of_sound: in m/s, for ranges in ``us``.
-        no_echo_m: from this range on there was no echo.
+        time_unit: the unit of the time.
+        ranges: the columns with ranges; by default those whose name or unit says so.
+        range_unit: the unit of the ranges; ``us`` are microseconds from firing to echo.
+        sensor: the column with the sensor of each row.
+        speed_of_sound: the speed of sound in m/s, for ranges in ``us``.
+        no_echo_m: the range from which on a value means no echo.
         no_echo: values that mean no echo, as they stand in the log; by default ``0``, numbers below 0, and a repeated ceiling.
         columns: the names of the columns in their order, in place of a header; ``-`` leaves one out.
         topics: the topics to read, whatever their type.
-        fields: triples of topic, field and unit, as ``("/sonars", "distance_mm[]", "mm")``.
-        judged: also read what a filter made of another topic, ``TOPIC/accepted`` and ``TOPIC/confirmed``.
+        fields: triples of topic, field and unit, such as ``("/sonars", "distance_mm[]", "mm")``.
+        judged: whether to read the output topics of a filter too, ``TOPIC/accepted`` and ``TOPIC/confirmed``.
 
     Raises:
         LogError: the log cannot be read, or holds no sensor.
@@ -434,15 +433,15 @@ def read_log(
 
 
 def check(log: object, **options: Unpack[_Options]) -> Checked:
-    """Find out from any log of ranges if its sensors read each other's sound, and what to do next.
+    """Find out from any log of ranges whether its sensors read each other's sound, and what to do next.
 
     Args:
-        log: a path, a URL, a file object or a text that was pasted, as :func:`read_log` reads them; a DataFrame of pandas or polars; a
+        log: a path, a URL, a file object or pasted text, as :func:`read_log` reads them; a DataFrame of pandas or polars; a
             dict of columns; an array of one column per sensor; ``Ranges``; or ``Readings`` of the simulator.
-        options: as of :func:`read_log`.
+        options: as for :func:`read_log`.
 
     Raises:
-        LogError: no ranges are found in it.
+        LogError: no ranges are found in the log.
         EerufError: an argument is wrong.
 
     Example:
@@ -469,7 +468,7 @@ def check(log: object, **options: Unpack[_Options]) -> Checked:
 
 
 def _as_log(log: object) -> _Log:
-    """Convert anything to what :func:`read_log` reads: tables and arrays to CSV."""
+    """Convert tables and arrays to CSV, which :func:`read_log` reads."""
     import io
 
     import numpy as np
@@ -482,7 +481,7 @@ def _as_log(log: object) -> _Log:
     elif hasattr(log, "write_csv"):
         return io.StringIO(log.write_csv())
     elif hasattr(log, "to_csv"):
-        # An index that only counts is no column.
+        # An index that only counts is not a column.
         return io.StringIO(log.to_csv(index=type(getattr(log, "index", None)).__name__ != "RangeIndex"))
     elif isinstance(log, (np.ndarray, list, tuple)):
         table = np.asarray(log, dtype=float)
@@ -525,15 +524,15 @@ def blocks(
 ) -> Iterator[Ranges] | Iterator[Judged]:
     """Read a log of any length in little memory: block by block, in the order in which it was recorded.
 
-    There is at least one block. Names, guesses and damage are those that are known so far, which in the last block are those of the
-    whole log; ``firing`` and ``crosstalk`` are known only there.
+    There is at least one block. A block has the names, guesses and damage that are known so far; only the last one has those of the
+    whole log, and ``firing`` and ``crosstalk``.
 
     Args:
         log: a path, a URL or a file object.
         rows: how many readings a block has, 1 or more; the last one may have fewer.
-        judge: judges each reading; the blocks are :class:`Judged` then.
-        out: with a judge, an MCAP file to write: each topic, and beside it what is accepted.
-        options: as of :func:`read_log`.
+        judge: the judge of each reading, if any; the blocks are then :class:`Judged`.
+        out: with a judge, an MCAP file to write: each topic, and another one with its accepted readings.
+        options: as for :func:`read_log`.
 
     Raises:
         LogError: the log cannot be read, or holds no sensor.
@@ -549,7 +548,7 @@ def blocks(
     of = Ranges if judge is None else Judged
     with contextlib.ExitStack() as opened:
         reader = _eeruf._LogBlocks(opened.enter_context(_opened(log)), options, _range_judge(judge), out, rows)
-        # Wrong arguments have been named by now, and are not left for the first block.
+        # Wrong arguments have raised errors by now, not with the first block.
         kept = opened.pop_all()
     return _each(of, reader, kept)
 
@@ -567,7 +566,7 @@ def _range_judge(judge: object) -> Agree | None:
 
 
 def read_firings(log: _Log) -> Firings:
-    """Read a ring's log of firings, text, MCAP or frames of the serial line; docs/how-to/diagnose.md has the format.
+    """Read a ring's log of firings: text, MCAP or frames of the serial line. docs/how-to/diagnose.md has the format.
 
     Args:
         log: a path, a URL or a file object.
@@ -600,10 +599,10 @@ def replay(
     """Judge the ranges of a log again.
 
     Args:
-        log: a path, a URL or a file object; or ranges as :func:`read_log` gave them.
+        log: a path, a URL or a file object; or ranges from :func:`read_log`.
         judge: an :class:`Agree`.
-        out: an MCAP file to write: each topic, and beside it what is accepted; not for ranges that were read before.
-        options: as of :func:`read_log`; of ranges that were read before ``speed_of_sound`` alone.
+        out: an MCAP file to write: each topic, and another one with its accepted readings; not for ranges from :func:`read_log`.
+        options: as for :func:`read_log`; only ``speed_of_sound`` for ranges from :func:`read_log`.
 
     Raises:
         LogError: the log cannot be read.
@@ -648,7 +647,7 @@ def diagnose(log: Firings | _Log, *, tolerance_us: int = 75, max_travel_us: int 
     Args:
         log: firings, or a path, a URL or a file object.
         tolerance_us: largest difference of a reading from what a path predicts, about four times the jitter.
-        max_travel_us: for how long sound is followed.
+        max_travel_us: the longest travel time of sound to consider.
 
     Raises:
         LogError: the log cannot be read.

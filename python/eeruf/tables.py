@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from eeruf._eeruf import Schedule
 
-# As in eeruf itself.
+# Type checkers take it for true, as in eeruf itself.
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Final

@@ -1,4 +1,4 @@
-"""Types of what eeruf returns, for annotations, and guards for its literals. Nothing here has to be made by hand.
+"""Types of eeruf's results, for annotations, and guards for its literals. Only eeruf itself needs to create them.
 
 Example:
     >>> from eeruf.typing import SetOne, is_kind
@@ -69,10 +69,10 @@ if TYPE_CHECKING:
 
 
 def is_kind(name: str) -> TypeGuard[_Kind]:
-    """Return true for a kind of readings, so that a type checker takes it for one.
+    """Return true if a name is a kind of readings, and tell that to type checkers.
 
     Args:
-        name: a text from elsewhere, such as a log.
+        name: a string from elsewhere, such as a log.
 
     Example:
         >>> from eeruf.typing import is_kind
@@ -84,10 +84,10 @@ def is_kind(name: str) -> TypeGuard[_Kind]:
 
 
 def is_method(name: str) -> TypeGuard[_MethodName]:
-    """Return true for a name that methods have, so that a type checker takes it for one.
+    """Return true if a name is that of a method, and tell that to type checkers.
 
     Args:
-        name: a text from elsewhere, such as a command line.
+        name: a string from elsewhere, such as a command line.
 
     Example:
         >>> from eeruf.typing import is_method

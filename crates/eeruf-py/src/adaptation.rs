@@ -25,21 +25,21 @@ fn rung(name: &str, schedule: &Bound<'_, PyAny>, t_delta: Micros) -> PyResult<Ru
 /// Adaptive scheduling (end of Sec. 3.1): fire more slowly if too many readings are rejected, and faster again once few
 /// are.
 ///
-/// It watches the rejection rate over windows of some periods. One noisy window moves one rung up, to a longer period;
+/// It watches the rejection rate over windows of periods. One noisy window moves one rung up, to a longer period;
 /// only several consecutive calm windows move one rung down.
 ///
 /// Args:
-///     schedules: the rungs, of equally many sensors, from the shortest period to the longest, each a
-///         ``Schedule``. The ring begins with the first.
-///     t_delta_us: ``T_delta`` of the ring, at which each must reject crosstalk.
-///     noisy: above this rejection rate, a fraction of 1, it fires more slowly.
-///     calm: up to this rejection rate a window is calm.
+///     schedules: a ``Schedule`` for each rung, from the shortest period to the longest, all with the same number of
+///         sensors. The ring begins with the first.
+///     t_delta_us: ``T_delta`` of the ring, at which each schedule must reject crosstalk.
+///     noisy: the rejection rate, a fraction of 1, above which it fires more slowly.
+///     calm: the rejection rate up to which a window is calm.
 ///     window_periods: how many periods a window has, 1 to 255.
-///     patience: how many calm windows running it takes to fire faster, 1 to 255.
+///     patience: how many consecutive calm windows it takes to fire faster, 1 to 255.
 ///
 /// Raises:
-///     EerufError: something of the wrong type or out of range; a schedule does not reject crosstalk at this
-///         ``t_delta_us``; the schedules are no ladder.
+///     EerufError: an argument of the wrong type or out of range; a schedule does not reject crosstalk at this
+///         ``t_delta_us``; the schedules do not form a ladder.
 ///
 /// Example:
 ///     >>> import eeruf
@@ -61,7 +61,7 @@ pub(crate) struct Adaptation {
     adaptation: Exclusive<OnLadder<Arc<[Rung]>>>,
 }
 
-/// Takes a fraction of 1, as thousandths.
+/// Converts a fraction of 1 to thousandths.
 fn permille(name: &str, value: Option<&Bound<'_, PyAny>>, default: u16) -> PyResult<u16> {
     // At most 1000.
     value.map_or(Ok(default), |share| number(name, share, 0.0..=1.0).map(|share| (1e3 * share).round() as u16))
@@ -101,19 +101,19 @@ impl Adaptation {
         Ok(Self { adaptation: Exclusive::new("Adaptation", adaptation) })
     }
 
-    /// Read an event of a ring, and change the ring to another schedule when that is better. Only ends of periods
+    /// Read an event of a ring, and change the ring's schedule if another one is better. Only ends of periods
     /// matter.
     ///
     /// Args:
     ///     ring: an ``eeruf.Ring`` that began with the first schedule.
-    ///     event: what its ``poll`` returned.
+    ///     event: an event that its ``poll`` returned.
     ///
     /// Returns:
-    ///     Whether there was a change; the ring makes it when the present period ends.
+    ///     True if the schedule changes; the ring makes the change when the present period ends.
     ///
     /// Raises:
-    ///     EerufError: no ring, no event, or a ring of other sensors; the ring refuses the schedule. Both then go on
-    ///         as before.
+    ///     EerufError: not a ring, not an event, or a ring with another number of sensors; the ring refuses the
+    ///         schedule. Both then continue as before.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -139,13 +139,13 @@ impl Adaptation {
     /// The schedule in use.
     #[getter]
     fn schedule(&self) -> PyResult<Schedule> {
-        // It is always on one of its rungs.
+        // The ring is always on one of the rungs.
         let rung = self.rung()?;
         Ok(Schedule(*self.adaptation.get()?.rungs()[rung].schedule()))
     }
 
-    /// The share of compared readings that were rejected in the last whole window; None before, or if nothing was
-    /// compared in it.
+    /// The share of compared readings that were rejected in the last complete window; None before the first, or if
+    /// nothing was compared in it.
     #[getter]
     fn rejection_rate(&self) -> PyResult<Option<f64>> {
         let permille = self.adaptation.get()?.rejection_permille();

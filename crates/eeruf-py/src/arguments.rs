@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 
 use crate::errors::{EerufError, warn};
 
-/// `NAME = VALUE; expected EXPECTED`.
+/// The error `NAME = VALUE; expected EXPECTED`.
 pub(crate) fn wrong(name: &str, value: impl Display, expected: impl Display) -> PyErr {
     EerufError::new_err(format!("{name} = {value}; expected {expected}"))
 }
@@ -69,7 +69,7 @@ pub(crate) fn whole_or<T: TryFrom<i128> + TryInto<i128> + Copy>(
     value.map_or(Ok(default), |value| whole(name, value, range))
 }
 
-/// A whole number like [`whole_or`]; no number is `None`.
+/// A whole number, or `None` if there is none.
 pub(crate) fn whole_or_none<T: TryFrom<i128> + TryInto<i128> + Copy>(
     name: &str,
     value: Option<&Bound<'_, PyAny>>,
@@ -78,18 +78,18 @@ pub(crate) fn whole_or_none<T: TryFrom<i128> + TryInto<i128> + Copy>(
     value.map(|value| whole(name, value, range)).transpose()
 }
 
-/// `True` or `False`, Python's or `NumPy`'s.
+/// A Boolean, of Python or `NumPy`.
 pub(crate) fn flag(name: &str, value: Option<&Bound<'_, PyAny>>, default: bool) -> PyResult<bool> {
     let Some(value) = value else { return Ok(default) };
     value.extract().map_err(|_| wrong(name, shown(value), "True or False"))
 }
 
-/// A text.
+/// A string.
 pub(crate) fn text(name: &str, value: &Bound<'_, PyAny>, expected: &str) -> PyResult<String> {
     value.extract().map_err(|_| wrong(name, shown(value), expected))
 }
 
-/// A text out of a few, or the first of them if there is none.
+/// One of a few strings, or the first of them if there is none.
 pub(crate) fn choice<T: Copy>(name: &str, value: Option<&Bound<'_, PyAny>>, of: &[(&str, T)]) -> PyResult<T> {
     let said = value.map(|value| value.extract::<String>().unwrap_or_default());
     let found = of.iter().find(|(text, _)| said.as_deref().is_none_or(|said| said == *text));
@@ -108,7 +108,7 @@ pub(crate) fn instance<'a, 'py, T: pyo3::PyTypeInfo>(
     value.cast().map_err(|_| wrong(name, shown(value), expected))
 }
 
-/// Several items: any sequence or iterator, but not a text.
+/// Several items: any sequence or iterator, but not a string.
 pub(crate) fn items<'py>(name: &str, value: &Bound<'py, PyAny>, expected: &str) -> PyResult<Vec<Bound<'py, PyAny>>> {
     let refused = || wrong(name, shown(value), expected);
     if value.is_instance_of::<pyo3::types::PyString>() {
@@ -125,7 +125,7 @@ pub(crate) fn number(name: &str, value: &Bound<'_, PyAny>, range: RangeInclusive
     }
 }
 
-/// Refuses an angle above a limit in radians, which is probably in degrees.
+/// Refuses an angle above a limit in radians: it is probably in degrees.
 pub(crate) fn in_radians(name: &str, given: f64, most: f64) -> PyResult<f64> {
     if given.abs() <= most {
         return Ok(given);
@@ -135,7 +135,7 @@ pub(crate) fn in_radians(name: &str, given: f64, most: f64) -> PyResult<f64> {
     Err(wrong(name, given, expected))
 }
 
-/// Refuses echo times that are all too short for any sensor, and so probably in another unit.
+/// Refuses echo times that are all too short for any sensor: they are probably in another unit.
 pub(crate) fn in_microseconds(name: &str, times: impl Iterator<Item = f64>) -> PyResult<()> {
     let most = times.filter(|time| !time.is_nan()).fold(0.0, f64::max);
     // 100 us are 17 mm; an echo of 43 m takes 0.25 s.

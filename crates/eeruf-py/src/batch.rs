@@ -20,18 +20,18 @@ use crate::{
 /// Many simulations that advance together on all cores, without the interpreter lock: arrays in, arrays out. For
 /// reinforcement learning and sweeps; only the first robot of each world is steered and observed.
 ///
-/// A world's steps give the readings of :class:`Simulation`, bit for bit, on any number of threads. A world in which a
-/// sensor or a body goes into something solid stops at the beginning of that step and ``touches``, until :meth:`reset`.
+/// A world's steps give the readings of :class:`Simulation`, bit for bit, on any number of threads. If a sensor or a
+/// body moves into something solid, its world stops at the beginning of that step and ``touches`` until :meth:`reset`.
 ///
 /// Args:
 ///     scenes: one or more, each with a robot; all first robots have the same number of sensors.
-///     method: one of ``METHODS``, or a :class:`Method` without callables: those would hold the interpreter lock.
-///     seeds: of the noise of each world, 0 to 2^64 - 1; the scenes' by default.
-///     threads: how many to step on, 1 to 1024; by default one a core.
+///     method: one of ``METHODS``, or a :class:`Method` without callables, which would hold the interpreter lock.
+///     seeds: the seed of each world's noise, 0 to 2^64 - 1; by default its scene's.
+///     threads: the number of threads, 1 to 1024; by default one per core.
 ///
 /// Raises:
-///     EerufError: no scenes, no such method, or something of the wrong type or out of range; a scene has no robot; a
-///         ring cannot fire by the method as it should listen, or the method has callables.
+///     EerufError: no scenes, no such method, or an argument of the wrong type or out of range; a scene has no robot; a
+///         ring's listening times do not fit the method, or the method has callables.
 ///
 /// Example:
 ///     >>> from eeruf import sim
@@ -104,7 +104,7 @@ impl Member {
         Ok(())
     }
 
-    /// A world in the same state.
+    /// A copy in the same state.
     fn copy(&self) -> Option<Self> {
         let (asked, simulation, known) =
             (self.asked.clone(), self.simulation.copy(Stop::default())?, self.known.clone());
@@ -143,7 +143,7 @@ impl Batch {
         Ok(state)
     }
 
-    /// One value for each world out of a number or an array.
+    /// One value for each world, from a number or an array.
     fn for_each(&self, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
         let expected = format!("a number, or one for each of the {} worlds, from -50 to 50", self.size);
         let refused = || wrong(name, shown(value), &expected);
@@ -259,15 +259,15 @@ impl Batch {
     /// Args:
     ///     seconds: how long, 0 to 10^9.
     ///     v_m_s: the first robots' speed ahead from now on, in m/s, -50 to 50: a number, or one for each world.
-    ///         Without it they go on as before.
+    ///         Without it they keep their speeds.
     ///     w_rad_s: their rate of turn, counter-clockwise, in rad/s; given together with ``v_m_s``.
     ///
     /// Returns:
-    ///     What all worlds look like then.
+    ///     The state of all worlds afterwards.
     ///
     /// Raises:
-    ///     EerufError: no such time or speeds; a robot has moved out of its scene's reach. Other worlds may have gone
-    ///         on; :meth:`reset` this one.
+    ///     EerufError: an invalid time or speed; a robot has moved out of its scene's reach. Other worlds may have
+    ///         advanced; :meth:`reset` this one.
     ///
     /// Example:
     ///     >>> from eeruf import experiments, sim
@@ -317,20 +317,20 @@ impl Batch {
         py.detach(|| Self::look(&self.worlds.get()?))
     }
 
-    /// Begin again in some worlds: time 0, robots at their first poses.
+    /// Reset some worlds: time 0, robots at their initial poses.
     ///
     /// Args:
-    ///     worlds: which ones: a mask, or numbers from 0; all by default.
-    ///     seeds: of their noise from now on, one for each of them; the same as before by default.
-    ///     scenes: other scenes for them, one for each; their first robots have as many sensors.
-    ///     poses: where their first robots begin: an array of shape (n, 3), x, y and heading in metres and radians.
+    ///     worlds: a mask, or indices from 0; all by default.
+    ///     seeds: new seeds of their noise, one for each; unchanged by default.
+    ///     scenes: new scenes, one for each, whose first robots have the same number of sensors as before.
+    ///     poses: initial poses of their first robots: an array of shape (n, 3), x, y, heading in metres and radians.
     ///
     /// Returns:
-    ///     What all worlds look like then.
+    ///     The state of all worlds afterwards.
     ///
     /// Raises:
-    ///     EerufError: no such worlds, or not one of a thing for each; a ring cannot fire by the method as it should
-    ///         listen.
+    ///     EerufError: invalid worlds, or an argument without one entry for each; a ring's listening times do not
+    ///         fit the method.
     ///
     /// Example:
     ///     >>> from eeruf import experiments, sim
@@ -389,11 +389,11 @@ impl Batch {
         format!("<Batch: {} worlds of {} sensors>", self.size, self.sensors)
     }
 
-    /// A copy continues in the same way, on its own threads.
+    /// Copies the worlds in their present states; the copy steps on its own threads.
     fn __copy__(&self, py: Python<'_>) -> PyResult<Self> {
         let copied =
             py.detach(|| Ok::<_, PyErr>(self.worlds.get()?.iter().map(Member::copy).collect::<Option<_>>()))?;
-        // None of its worlds has callables.
+        // No world of a batch has callables.
         let worlds = copied.ok_or_else(|| EerufError::new_err("a batch with callables cannot be copied"))?;
         Ok(Self {
             method: self.method.as_ref().map(|method| method.clone_ref(py)),

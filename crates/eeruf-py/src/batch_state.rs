@@ -1,4 +1,4 @@
-//! `typing.BatchState`: what the worlds of a batch look like, as arrays.
+//! `typing.BatchState`: the state of a batch's worlds, as arrays.
 
 use numpy::{Element, PyArray1};
 use pyo3::{
@@ -28,8 +28,8 @@ impl Known {
     };
 }
 
-/// The worlds of a :class:`Batch` at one moment: arrays with a row for each world, and of what concerns sensors a
-/// column for each sensor of its first robot. The arrays are read-only.
+/// The worlds of a :class:`Batch` at one moment: arrays with a row for each world and, for sensor data, a column for
+/// each sensor of its first robot. The arrays are read-only.
 ///
 /// Example:
 ///     >>> from eeruf import experiments, sim
@@ -88,7 +88,7 @@ impl BatchState {
         shaped(py, self.time_s.clone(), (self.worlds,))
     }
 
-    /// Where the first robots are, x, y and heading in metres and radians: float64 of shape (worlds, 3).
+    /// The poses of the first robots, x, y and heading in metres and radians: float64 of shape (worlds, 3).
     #[getter]
     fn pose<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         shaped(py, self.pose.clone(), (self.worlds, 3))

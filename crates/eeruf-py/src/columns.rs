@@ -1,5 +1,5 @@
-//! Arrays of results: made on first use, kept, and read-only, so that loops over them do not copy, and writing to them
-//! fails instead of being lost.
+//! Arrays of results: made on first use, kept, and read-only, so that loops over them do not copy, and that writing
+//! to them fails instead of being lost.
 
 use numpy::{Element, PyArray1, prelude::*};
 use pyo3::{exceptions::PyMemoryError, prelude::*, sync::PyOnceLock};
@@ -25,7 +25,7 @@ impl<const N: usize> Columns<N> {
         Ok(made.bind(py).clone())
     }
 
-    /// Makes a column of codes, which compare with their names.
+    /// The column at an index, of codes that can be compared with their names.
     pub(crate) fn codes<'py>(
         &self,
         py: Python<'py>,
@@ -46,7 +46,7 @@ pub(crate) enum Codes {
 }
 
 impl Codes {
-    /// The array, as one that can be compared with the names.
+    /// The array of codes in a form that can be compared with their names.
     pub(crate) fn name<'py>(self, codes: &Bound<'py, PyAny>) -> PyResult<Bound<'py, PyAny>> {
         let class = if matches!(self, Self::Kinds) { "Kinds" } else { "Causes" };
         codes.call_method1("view", (codes.py().import("eeruf._codes")?.getattr(class)?,))
@@ -63,7 +63,7 @@ pub(crate) fn read_only<T: Element>(
     Ok(of_vec(py, elements))
 }
 
-/// An array over a vector's memory that cannot be written to.
+/// A read-only array over a vector's memory.
 pub(crate) fn of_vec<T: Element>(py: Python<'_>, elements: Vec<T>) -> Bound<'_, PyAny> {
     PyArray1::from_vec(py, elements).readwrite().make_nonwriteable().as_any().clone()
 }

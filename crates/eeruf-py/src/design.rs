@@ -20,7 +20,7 @@ use crate::{
 const DESIGN_BUDGET: u64 = 50_000_000;
 /// Budget of nodes for the proof of a certificate.
 const CERTIFICATE_BUDGET: usize = 1_000_000;
-/// Number of sensors up to which the engine checks often enough if it must stop. With more sensors there may be a good
+/// Number of sensors up to which the engine checks often enough whether to stop. With more sensors there may be a good
 /// part of a second between two checks, so the search runs on its own thread. A small search would wait longer for that
 /// thread than for its answer.
 const FEW_SENSORS: usize = 12;
@@ -45,25 +45,25 @@ const FEW_SENSORS: usize = 12;
 ///     budget: how many nodes to visit at most, 1 or more; 50 million by default.
 ///     progress: True for a bar (tqdm if it is installed), or a callable that takes the share done (None: unknown) and
 ///         a text.
-///     certificate: whether to prove the answer to :func:`check_certificate`, in ``Found.certificate``: that no period
-///         is shorter, or none below ``bound_us``, or below a lower bound that a million nodes suffice for.
-///     time_limit_s: how long the call may take before it gives the best schedule so far, above 0; the certificate has
-///         what time is left. No limit by default.
+///     certificate: whether to return a proof in ``Found.certificate``, for :func:`check_certificate`: no period is
+///         shorter, or none is below ``bound_us``, or below a lower bound that a million nodes can prove.
+///     time_limit_s: the time in seconds, above 0, after which the call returns the best schedule so far; the
+///         certificate gets the time that is left. No limit by default.
 ///     refire_us: how soon a sensor may be triggered again, where that is later than its window. One for all, or a
 ///         sequence.
 ///     intervals_us: pairs of sensors with the least time between their firings, whatever the layout says:
 ///         ``[(0, 4, 9000)]``; 0 for none.
 ///     shared_lines: groups of sensors on one echo line, ``[(0, 3), (1, 4)]``: none fires while another listens.
 ///     together: groups of sensors that fire at the same instants, declared not to hear each other.
-///     atlas: whether the atlas of rings whose shortest period is known may answer, as that of the program does;
-///         ``Found.from_atlas`` says whether it did, and ``nodes`` is 0 then.
+///     atlas: whether the answer may come from the atlas of rings with known shortest periods, as in the program;
+///         ``Found.from_atlas`` is then true and ``nodes`` is 0.
 ///
 /// Returns:
 ///     A :class:`Found`: the shortest period in ``value_us``, or the best found within budget and time; ``proven`` says
 ///     which.
 ///
 /// Raises:
-///     EerufError: something of the wrong type or out of range; needs that make no sense, or too large a grid.
+///     EerufError: an argument of the wrong type or out of range; invalid needs, or too large a grid.
 ///
 /// Example:
 ///     >>> import eeruf
@@ -141,17 +141,17 @@ pub(crate) fn asked<'py>(
 /// Check a certificate: that its schedule keeps the requirements in it, and that no period is below its bound.
 ///
 /// The checker is ``checker/check_period.py``, which shares nothing with the search; :func:`example` returns its text;
-/// ``docs/reference/certificate.md`` has the format and the proof of each rule. A certificate speaks of the numbers
-/// that stand in it, and of nothing else.
+/// ``docs/reference/certificate.md`` has the format and the proof of each rule. A certificate is only about the
+/// numbers that stand in it.
 ///
 /// Args:
 ///     text: the certificate, as in ``design(..., certificate=True).certificate``.
 ///
 /// Returns:
-///     What is proven: no period is below this, in microseconds. If it is that of the schedule, it is the shortest.
+///     The proven lower bound on the period, in microseconds. If the schedule has this period, it is the shortest.
 ///
 /// Raises:
-///     EerufError: no text.
+///     EerufError: not a string.
 ///     CertificateError: the first line that is wrong.
 ///
 /// Example:

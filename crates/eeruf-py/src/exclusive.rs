@@ -18,7 +18,7 @@ impl<T> Exclusive<T> {
         Self { state: Mutex::new(state), name }
     }
 
-    /// The state, unless another call has it: waiting for that call could last forever.
+    /// Returns the state, or an error if another call has it, since waiting for that call could take forever.
     pub(crate) fn get(&self) -> PyResult<MutexGuard<'_, T>> {
         match self.state.try_lock() {
             Ok(state) => Ok(state),

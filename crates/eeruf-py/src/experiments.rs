@@ -109,7 +109,7 @@ struct Merged<F: Serialize, G: Serialize> {
     groups: G,
 }
 
-/// The figures of runs from several calls, for Set I, II or III, from JSON of pairs of names and runs.
+/// The figures of runs from several calls for Set I, II or III; the JSON has pairs of a name and its runs.
 #[pyfunction]
 #[pyo3(name = "_figures", signature = (set, runs))]
 pub(crate) fn figures(py: Python<'_>, set: u8, runs: &Bound<'_, PyString>) -> PyResult<String> {
@@ -139,7 +139,7 @@ pub(crate) fn difference(py: Python<'_>, differences: Vec<f64>) -> PyResult<Opti
     py.detach(|| Difference::of(differences).map(|found| json(&found)).transpose())
 }
 
-/// Scenes of the experiments by number, with the largest order and the physics.
+/// The number of the first scene of an experiment, and the physics.
 fn numbered(number: &Bound<'_, PyAny>, physics: &Bound<'_, PyAny>) -> PyResult<(u64, Physics)> {
     Ok((whole("first", number, 0..=u64::from(u32::MAX) + SEEDS_MOST)?, surroundings::physics(Some(physics))?))
 }
@@ -200,7 +200,7 @@ pub(crate) struct InRooms<'py> {
     cost: Bound<'py, PyAny>,
 }
 
-/// Ways of firing a ring file's ring, judged in rooms, as `eeruf study RING.toml --json` prints them.
+/// Judges ways of firing a ring file's ring in rooms, as `eeruf study RING.toml --json` prints them.
 #[pyfunction]
 #[pyo3(name = "_recommend", signature = (ring, asked, progress))]
 pub(crate) fn recommend(
@@ -224,7 +224,7 @@ pub(crate) fn recommend(
         let keep_going = |done| background.go_on(Some(done), || "rooms".to_owned());
         let judged = spec.judge_in_rooms(design.as_ref(), &asked, &keep_going);
         let mut answer = judged.map_err(EerufError::new_err)?;
-        // In rooms of the caller's own nothing appears.
+        // Nothing appears in the caller's own rooms.
         if cost && asked.own.is_empty() {
             answer.by_cost = spec.cost_in_rooms(design.as_ref(), &asked, &keep_going).ok();
         }

@@ -16,7 +16,7 @@ fn value_of(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Value> {
     if let Ok(flag) = value.cast::<PyBool>() {
         return Ok(Value::from(flag.is_true()));
     }
-    // A schedule, and whatever else writes itself so.
+    // A schedule, or anything else with `to_toml`.
     if let Ok(text) = value.call_method0("to_toml").and_then(|text| text.extract::<String>()) {
         return text.parse::<Table>().map(Value::Table).map_err(|error| EerufError::new_err(error.to_string()));
     }

@@ -7,7 +7,7 @@ use pyo3::{
     types::{PyDict, PyList, PyTuple},
 };
 
-/// A result: an object of a class of `eeruf._records`, made from its fields in order.
+/// A result: an instance of a class in `eeruf._records`, made from its fields in order.
 pub(crate) fn record<'py>(py: Python<'py>, class: &str, fields: impl PyCallArgs<'py>) -> PyResult<Bound<'py, PyAny>> {
     static RECORDS: PyOnceLock<Py<PyModule>> = PyOnceLock::new();
     let records = RECORDS.get_or_try_init(py, || py.import("eeruf._records").map(Bound::unbind))?;

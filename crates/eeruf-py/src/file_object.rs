@@ -17,7 +17,7 @@ use crate::watch::Watch;
 
 /// Largest number of bytes per read.
 const MOST_BYTES: usize = 1 << 20;
-/// Interval at which Python is asked if work must stop.
+/// Interval at which Python is asked whether work must stop.
 const EVERY: Duration = Duration::from_millis(20);
 
 /// A request of the working thread to the thread that waits for it.
@@ -72,7 +72,7 @@ impl<T: Send + 'static> Work<T> {
         let (answer, answers) = mpsc::channel();
         let base = match file.map(|file| file.call_method0("tell")) {
             Some(Ok(place)) => place.extract().unwrap_or(0),
-            // A stream stands nowhere.
+            // A stream has no position.
             Some(Err(_)) | None => 0,
         };
         let results = Results(ask.clone());
@@ -98,7 +98,7 @@ impl<T: Send + 'static> Work<T> {
                 Ok(Ask::Read(most)) => Answer::Bytes(self.read(py, most)?),
                 Ok(Ask::Seek(to)) => Answer::Place(self.seek(py, to)?),
             };
-            // Else the work has ended, and its result comes.
+            // If sending fails, the work has ended, and its result follows.
             _ = self.answers.send(answer);
         }
     }
@@ -156,7 +156,7 @@ impl<T> Read for FileObject<T> {
 impl<T> Seek for FileObject<T> {
     fn seek(&mut self, to: SeekFrom) -> io::Result<u64> {
         let to = match to {
-            // The object itself stands behind the bytes that were not yet taken.
+            // The object's own position is after the bytes that were not used yet.
             SeekFrom::Current(offset) => match self.at.checked_add_signed(offset) {
                 Some(place) => SeekFrom::Start(place),
                 None => return Err(io::ErrorKind::InvalidInput.into()),

@@ -21,10 +21,10 @@ use crate::{
 ///     sensors: how many, 1 to 64.
 ///     t_delta_us: ``T_delta``: readings that differ by no more are near-identical.
 ///     consecutive: how many readings in a row must agree, 2 to 8.
-///     echoes: how many echoes of one firing a sensor reports at most, 1 to 8; the earliest that repeats is accepted.
+///     echoes: the most echoes of one firing that a sensor reports, 1 to 8; the earliest that repeats is accepted.
 ///
 /// Raises:
-///     EerufError: something of the wrong type or out of range; fewer than 2 or more than 8 readings to compare.
+///     EerufError: an argument of the wrong type or out of range; fewer than 2 or more than 8 readings to compare.
 ///
 /// Example:
 ///     >>> import eeruf
@@ -51,7 +51,7 @@ pub(crate) struct EchoFilter {
 /// Number of rows between two checks for Ctrl-C.
 const ROWS_A_LOOK: usize = 4096;
 
-/// A filter for sensors that report one echo, which is smaller and faster, or several.
+/// A filter for one echo of a firing, which is smaller and faster, or for several.
 #[derive(Clone)]
 enum Filter {
     One(Box<eeruf_core::EchoFilter<MAX_SENSORS>>),
@@ -94,7 +94,7 @@ impl EchoFilter {
     /// Judge one firing of a sensor.
     ///
     /// Args:
-    ///     sensor: which one, from 0.
+    ///     sensor: its index, from 0.
     ///     t_echo_us: the time of its echo after firing in whole microseconds, or None for no echo.
     ///     expected_change_us: expected change of a good reading from the one before, by the robot's own
     ///         motion: ``-2 v dt / c`` for an object approached at ``v``.
@@ -103,7 +103,7 @@ impl EchoFilter {
     ///     The reading, without phase and period, which a filter does not know.
     ///
     /// Raises:
-    ///     EerufError: no such sensor, or no such time.
+    ///     EerufError: an invalid sensor or time.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -128,7 +128,7 @@ impl EchoFilter {
     /// Judge one firing of a sensor that reports several echoes.
     ///
     /// Args:
-    ///     sensor: which one, from 0.
+    ///     sensor: its index, from 0.
     ///     t_echoes_us: the times of its echoes after firing in whole microseconds, in any order; the earliest
     ///         ``echoes`` count.
     ///     expected_change_us: as for ``push``.
@@ -137,7 +137,7 @@ impl EchoFilter {
     ///     The reading, without phase and period, which a filter does not know.
     ///
     /// Raises:
-    ///     EerufError: no such sensor, or no such times.
+    ///     EerufError: an invalid sensor or an invalid time.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -172,7 +172,7 @@ impl EchoFilter {
     ///     Array of int8 of the same shape: indices into ``eeruf.KINDS``.
     ///
     /// Raises:
-    ///     EerufError: another shape, or a time that is negative or 2^32 or more; nothing has been taken in then.
+    ///     EerufError: a wrong shape, or a time that is negative or 2^32 or more; the filter is then unchanged.
     ///
     /// Example:
     ///     >>> import eeruf, numpy
@@ -206,7 +206,7 @@ impl EchoFilter {
             }
             Ok(())
         });
-        // Ended halfway it has taken in nothing.
+        // If it ends early, the filter is unchanged.
         watch.outcome(pushed.map_err(|error: SensorError| error.raise())).inspect_err(|_| *filter = before)?;
         let kinds = numpy::PyArray1::from_vec(py, kinds).reshape([echoes.len() / self.sensors, self.sensors])?;
         Codes::Kinds.name(kinds.as_any())
@@ -215,10 +215,10 @@ impl EchoFilter {
     /// Forget the readings of a sensor, so that its next one is compared with nothing.
     ///
     /// Args:
-    ///     sensor: which one, from 0.
+    ///     sensor: its index, from 0.
     ///
     /// Raises:
-    ///     EerufError: no such sensor.
+    ///     EerufError: an invalid sensor.
     ///
     /// Example:
     ///     >>> import eeruf

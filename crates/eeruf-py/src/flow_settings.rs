@@ -29,7 +29,7 @@ pub(crate) struct FlowSettings {
     belief: Option<BeliefSettings>,
 }
 
-/// A setting of the plan, which is a time, or a setting of belief.
+/// A setting of the plan, which is a time. Settings of belief are times or counts.
 type Planned = (&'static str, fn(&mut FlowSettings) -> &mut Option<Micros>);
 type Believed = (&'static str, fn(&mut BeliefSettings) -> &mut Micros);
 type Counted = (&'static str, fn(&mut BeliefSettings) -> &mut u8);
@@ -123,7 +123,7 @@ impl FlowSettings {
         turns
     }
 
-    /// The seed of its random gaps. Robots with the same program must not draw the same gaps.
+    /// The seed of the random gaps. Robots with the same program must not draw the same gaps.
     pub(crate) fn drawn_seed(&self) -> u32 {
         self.seed.unwrap_or_else(|| RandomState::new().hash_one(0) as u32 | 1)
     }

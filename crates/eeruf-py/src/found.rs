@@ -41,7 +41,7 @@ impl Found {
     pub(crate) fn of_design(design: &RingDesign, began: Instant, certificate: Option<String>) -> Self {
         let found = search::Found { schedule: Some(design.schedule), ..design.found };
         let reason = Some(design.reason.clone());
-        // The atlas knows; else only who asks for a proof pays for one.
+        // The atlas has the proven bound; otherwise it is computed only if a proof was asked for, since it takes time.
         let is_asked = design.from_atlas || certificate.is_some();
         let certified_us = is_asked.then(|| design.certified()).flatten().map(Micros::as_micros);
         Self { from_atlas: design.from_atlas, certificate, certified_us, ..Self::of(&found, began, reason) }

@@ -26,10 +26,10 @@ const FARTHEST_M: f64 = 1e3;
 /// Args:
 ///     side: how many cells the grid's window has on a side, 1 to 4096.
 ///     cell_m: how wide a cell is, in metres, above 0.
-///     growth: whether cells beside certain ones grow faster (the paper's growth rate operator, for fast robots).
+///     growth: whether cells next to filled ones grow faster (the paper's growth rate operator, for fast robots).
 ///
 /// Raises:
-///     EerufError: something of the wrong type or out of range.
+///     EerufError: an argument of the wrong type or out of range.
 ///
 /// Example:
 ///     >>> from eeruf import nav
@@ -81,7 +81,7 @@ impl Himm {
         Ok(self.grid.get()?.cell_m())
     }
 
-    /// Returns true if cells grow faster beside cells with certainty.
+    /// Returns true if cells next to filled ones grow faster.
     #[getter]
     fn growth(&self) -> PyResult<bool> {
         Ok(self.grid.get()?.growth)
@@ -95,14 +95,14 @@ impl Himm {
         Ok((corner.x, corner.x + width, corner.y, corner.y + width))
     }
 
-    /// Move the window so that a place is in its middle cell. Cells that leave it are forgotten, those that enter are
+    /// Move the window so that a place is in its middle cell. Cells that leave it are forgotten, and new cells are
     /// empty.
     ///
     /// Args:
     ///     place: (x, y) in metres.
     ///
     /// Raises:
-    ///     EerufError: no such place.
+    ///     EerufError: an invalid place.
     ///
     /// Example:
     ///     >>> from eeruf import nav
@@ -116,15 +116,15 @@ impl Himm {
         Ok(())
     }
 
-    /// Enter an echo: an obstacle on a sensor's axis, and nothing before it.
+    /// Enter an echo: an obstacle on a sensor's axis, and free space in front of it.
     ///
     /// Args:
     ///     sensor: its place and heading (x, y, heading) in metres and radians.
-    ///     range_m: how far the obstacle is, in metres, 0 to 1,000.
+    ///     range_m: the distance of the obstacle, in metres, 0 to 1,000.
     ///     near_m: cells nearer than this, where the sensor is deaf, are left as they are.
     ///
     /// Raises:
-    ///     EerufError: no such place or range.
+    ///     EerufError: an invalid place or range.
     ///
     /// Example:
     ///     >>> from eeruf import nav
@@ -147,15 +147,15 @@ impl Himm {
         Ok(())
     }
 
-    /// Enter that nothing is on a sensor's axis.
+    /// Enter free space on a sensor's axis.
     ///
     /// Args:
     ///     sensor: its place and heading (x, y, heading) in metres and radians.
-    ///     range_m: as far as that, in metres, 0 to 1,000.
+    ///     range_m: the length of the free space, in metres, 0 to 1,000.
     ///     near_m: cells nearer than this, where the sensor is deaf, are left as they are.
     ///
     /// Raises:
-    ///     EerufError: no such place or range.
+    ///     EerufError: an invalid place or range.
     ///
     /// Example:
     ///     >>> from eeruf import nav
@@ -179,17 +179,17 @@ impl Himm {
     }
 
     /// Enter the readings of a simulation's ring from each sensor's true place: accepted echoes within a range are
-    /// obstacles; farther ones, and free space, clear the way.
+    /// obstacles; farther ones, and readings of free space, clear the cells on the way.
     ///
     /// Args:
-    ///     readings: of ``Simulation.step``.
-    ///     range_m: how far the grid is filled, in metres, 0 to 1,000.
+    ///     readings: the readings that ``Simulation.step`` returned.
+    ///     range_m: the range up to which the grid is filled, in metres, 0 to 1,000.
     ///     near_m: cells nearer than this, where the sensors are deaf, are left as they are.
-    ///     robot: whose readings, from 0.
+    ///     robot: index of the robot whose readings count, from 0.
     ///     sound_m_s: the speed of sound, in m/s, 100 to 1000.
     ///
     /// Raises:
-    ///     EerufError: no readings, or out of range.
+    ///     EerufError: not readings, or an argument out of range.
     ///
     /// Example:
     ///     >>> from eeruf import nav, sim
@@ -236,7 +236,7 @@ impl Himm {
     ///     0 to 15, or None outside the window.
     ///
     /// Raises:
-    ///     EerufError: no point.
+    ///     EerufError: not a point.
     ///
     /// Example:
     ///     >>> from eeruf import nav
@@ -303,6 +303,6 @@ impl Himm {
 fn occupied(grid: &eeruf_sim::Himm) -> impl Iterator<Item = (Point, u8)> + '_ {
     let half = 0.5 * grid.side() as f64 * grid.cell_m();
     let corner = grid.corner();
-    // Twice as many as are there, whichever cell the middle is taken to lie in.
+    // Twice the window's width covers all cells, whichever cell the middle falls into.
     grid.occupied(Point::new(corner.x + half, corner.y + half), 2 * grid.side())
 }

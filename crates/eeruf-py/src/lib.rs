@@ -1,6 +1,6 @@
 //! `eeruf._eeruf`: the compiled part of the Python package, one file for each concept. `eeruf-core` and `eeruf-sim` do
-//! the work; here arguments and results are converted: microseconds to `int`, many numbers to `NumPy` arrays, errors to
-//! exceptions. What users read is in `python/eeruf`.
+//! the work; this crate converts arguments and results: microseconds to `int`, many numbers to `NumPy` arrays, errors
+//! to exceptions. The public interface is in `python/eeruf`.
 
 #![allow(
     clippy::doc_markdown,
@@ -113,7 +113,7 @@ mod _eeruf {
         module.add("EERUF_METHODS", PyTuple::new(module.py(), eeruf.collect::<Vec<_>>())?)?;
         module.add("__version__", env!("CARGO_PKG_VERSION"))?;
         module.add("CAUSES", PyTuple::new(module.py(), crate::readings::CAUSES)?)?;
-        // What the picture of a course shows.
+        // Needed for the picture of a course.
         module.add("_ROOM_M", eeruf_sim::experiments::set_two::ROOM_M)?;
         module.add("_SIDE_M", eeruf_sim::LabMate::default().side_m)
     }

@@ -20,7 +20,7 @@ use crate::{
     logs::{Source, out_file, raise, warn_of_each},
 };
 
-/// Readings of a log, and the knowledge of the log after them.
+/// Readings of a log, and what is known about the log after them.
 #[derive(Default)]
 struct Block {
     sensor: Vec<i64>,
@@ -228,7 +228,7 @@ impl Block {
     }
 }
 
-/// A judge of ranges, `Agree`.
+/// The judge of ranges from an `Agree`.
 fn range_judge(judge: &Bound<'_, PyAny>) -> PyResult<RangeJudge> {
     let t_delta = Micros::new(whole("t_delta_us", &judge.getattr("t_delta_us")?, 0..=u32::MAX)?);
     Ok(RangeJudge { t_delta, consecutive: whole("consecutive", &judge.getattr("consecutive")?, 2..=8)? })
@@ -317,7 +317,7 @@ fn read_options(given: &Bound<'_, PyDict>) -> PyResult<Options> {
             return Err(PyTypeError::new_err(message));
         }
     }
-    // Not given and `None` are one.
+    // `None` means not given.
     let get = |name: &str| given.get_item(name).map(|value| value.filter(|value| !value.is_none()));
     let texts = |name: &str, expected: &'static str| match get(name)? {
         None => Ok(Vec::new()),

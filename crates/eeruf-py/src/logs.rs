@@ -222,7 +222,7 @@ pub(crate) fn diagnose<'py>(
         }
     }
     let out = PyDict::new(py);
-    // A vector of bytes would become bytes.
+    // A `Vec<u8>` would become `bytes`.
     let whole = |sensors: Vec<u8>| sensors.into_iter().map(u32::from).collect::<Vec<_>>();
     out.set_item("paths", paths(py, &found.paths)?)?;
     out.set_item("sender", read_only(py, sender.into_iter())?)?;

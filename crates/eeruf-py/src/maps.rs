@@ -1,4 +1,4 @@
-//! A scene out of an occupancy grid.
+//! A scene from an occupancy grid.
 
 use std::path::PathBuf;
 

@@ -29,20 +29,20 @@ const EXPECTED: &str = "a name of eeruf.sim.METHODS, or an eeruf.sim.Method";
 /// experiments take one wherever they take a name. Immutable; methods compare, and pickle if their callables do.
 ///
 /// Args:
-///     name: one of ``METHODS``, which gives whatever the others do not.
-///     label: the name in results and tables; by default ``name``. No two methods of one experiment have the same.
-///     schedule: what the ring fires by, for methods that fire by the robot's own. Its sensors must be as many as the
-///         robot's.
-///     settings: for ``flow`` and ``flow_multi_echo`` a dict as :meth:`eeruf.Ring.flow` takes it, of what differs from
-///         what follows from the robot; but for ``seed`` and ``alone``, which the scene says.
-///     sketch: a dict as the argument ``firing`` of :class:`Robot`, for methods that fire as sketches and modules do.
+///     name: one of ``METHODS``, for everything that the other arguments do not set.
+///     label: the name in results and tables, unique within an experiment; by default ``name``.
+///     schedule: the schedule to fire by, for methods that otherwise fire by the robot's own. It must have as many
+///         sensors as the robot.
+///     settings: for ``flow`` and ``flow_multi_echo``, a dict as for :meth:`eeruf.Ring.flow`, of settings that differ
+///         from those derived from the robot; without ``seed`` and ``alone``, which the scene gives.
+///     sketch: a dict as the argument ``firing`` of :class:`Robot`, for methods that fire like sketches and modules.
 ///     make_filter: makes your own filter: called with the :class:`Robot` at the start of each simulation, it returns a
-///         callable as the argument ``filter`` of :class:`Simulation`. A class whose instances can be called will do.
+///         callable as the argument ``filter`` of :class:`Simulation`. A class with callable instances works too.
 ///     make_firing: makes your own firing in the same way, a callable as the argument ``firing`` of
 ///         :class:`Simulation`.
 ///
 /// Raises:
-///     EerufError: no such method, or something that it does not take.
+///     EerufError: no such method, or an argument that it does not take.
 ///
 /// Example:
 ///     >>> from eeruf import sim

@@ -16,10 +16,10 @@ use crate::errors::{EerufError, warn_of};
 use crate::faults::table_of;
 
 /// Needs of a ring in one value: made from the keys of a ring file, such as ``module`` and ``speed_m_s``, or read from
-/// one. :func:`design`, :meth:`Schedule.verify`, ``Ring`` and ``Ring.flow`` take it in place of the times that follow.
+/// one. :func:`design`, :meth:`Schedule.verify`, ``Ring`` and ``Ring.flow`` take it in place of the single times.
 ///
 /// Args:
-///     keys: those of a ring file, by their names: docs/reference/ring-files.md has all. ``sensors`` and ``module`` are
+///     keys: the keys of a ring file, listed in docs/reference/ring-files.md. ``sensors`` and ``module`` are
 ///         enough.
 ///
 /// Raises:
@@ -38,7 +38,7 @@ use crate::faults::table_of;
 #[derive(Clone)]
 pub(crate) struct Needs {
     text: String,
-    /// The file, if it names a URDF, which is looked for beside it.
+    /// The ring file, if it names a URDF, which is looked up beside it.
     file: Option<PathBuf>,
     ring: Arc<RingSpec>,
 }
@@ -95,10 +95,10 @@ impl Needs {
     /// Read needs from the text of a ring file.
     ///
     /// Args:
-    ///     text: in TOML.
+    ///     text: the text, in TOML.
     ///
     /// Raises:
-    ///     EerufError: no text; the line that is wrong, and what is expected.
+    ///     EerufError: not a string; a wrong line, with what is expected.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -113,7 +113,7 @@ impl Needs {
     /// Read needs from a ring file, such as those in the folder ``rings``.
     ///
     /// Args:
-    ///     path: of the file.
+    ///     path: the path of the file.
     ///
     /// Raises:
     ///     EerufError: not a path; no such file, a file of another kind, or as for :meth:`from_toml`.

@@ -21,7 +21,7 @@ use crate::{
     robot::Robot,
 };
 
-/// Echoes that one firing of one sensor has heard, for a custom filter in a :class:`Simulation`.
+/// The echoes of one firing of one sensor, for a custom filter in a :class:`Simulation`.
 ///
 /// Example:
 ///     >>> from eeruf import sim
@@ -44,7 +44,7 @@ pub(crate) struct FiredReading {
     /// Time of the firing, in seconds.
     #[pyo3(get)]
     fired_s: f64,
-    /// Change of a good reading, since the sensor's previous firing, that odometry expects, in microseconds.
+    /// The change of a good reading since the sensor's previous firing that odometry predicts, in microseconds.
     #[pyo3(get)]
     expected_change_us: i32,
 }
@@ -94,7 +94,7 @@ impl FiredReading {
         PyTuple::new(py, &self.t_echoes_us)
     }
 
-    /// The levels of its echoes over the receiver's threshold at full gain, in dB, as a module reports them that has
+    /// The levels of its echoes over the receiver's threshold at full gain, in dB, as reported by modules that measure
     /// amplitudes: a tuple as long as ``t_echoes_us``, or empty where they are unknown.
     #[getter]
     fn levels_db<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
@@ -128,7 +128,7 @@ type Raised = Arc<Mutex<Option<PyErr>>>;
 #[derive(Default)]
 pub(crate) struct Calls {
     callables: Vec<Mutex<Option<Py<PyAny>>>>,
-    /// Callables given as arguments of the simulation: true for a firing, the robot, and the index.
+    /// Callables that were arguments of the simulation: true for a firing, the robot, and the callable's index.
     given: Vec<(bool, usize, usize)>,
     raised: Raised,
 }
@@ -165,7 +165,7 @@ impl Calls {
     }
 
     pub(crate) fn traverse(&self, visit: &PyVisit<'_>) -> Result<(), PyTraverseError> {
-        // One that is locked is being copied, and so is in use.
+        // A locked callable is being copied, so it is in use.
         for callable in self.callables.iter().filter_map(|callable| callable.try_lock().ok()) {
             visit.call(&*callable)?;
         }
@@ -305,7 +305,7 @@ pub(crate) fn own(
     made(py, makers, firing, filter, robots)
 }
 
-/// A copy: callables given as arguments are kept, those of the method are made again.
+/// A copy: callables given as arguments are kept, and the method's are made again.
 pub(crate) fn again(
     py: Python<'_>,
     calls: &Calls,
@@ -404,7 +404,7 @@ impl Filter for OwnFilter {
             };
             let returned = callable.call1((fired,))?;
             let (kind, t_echo) = kind_and_t_echo(&returned)?;
-            // The echo of that time, the latest of several; or, of a time that is no echo's, the latest of all.
+            // The latest echo with that time; if there is none, the firing's first echo, or else the latest of all.
             let echo = t_echo
                 .map(|t_echo| {
                     let same = last.iter().find(|echo| echo.t_echo() == t_echo);

@@ -66,7 +66,7 @@ impl Paths {
             let robot = contents.world().and_then(|world| world.robots().first());
             let module = robot.map_or(Transducer::POLAROID_6500, |robot| robot.transducer);
             let mut paths = eeruf_sim::Paths::default();
-            // Another thread has a tracer of its own.
+            // If another thread uses the tracer, this one makes its own.
             let (mut kept, mut own) = (contents.tracer.try_lock(), Tracer::new());
             let tracer = kept.as_deref_mut().unwrap_or(&mut own);
             tracer.frequency_hz = module.frequency_hz;
@@ -143,31 +143,31 @@ impl Paths {
         self.columns.get(py, 6, (0..self.paths.len()).map(|path| self.paths.elevations_rad(path)[0]))
     }
 
-    /// The elevation in which the receiver sees it, in radians, upwards positive; 0 in a flat scene: float64.
+    /// The elevation at which the receiver sees the path, in radians, upwards positive; 0 in a flat scene: float64.
     #[getter]
     fn arrival_elevation_rad<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.columns.get(py, 7, (0..self.paths.len()).map(|path| self.paths.elevations_rad(path)[1]))
     }
 
-    /// For each path its bounces from source to receiver, a list of tuples: a wall by its index, a pole by -1 minus its
-    /// index, an edge by 2^32 plus its index, the floor by 2^33 and the ceiling by one more. Those at floor and ceiling
-    /// stand last, in their own order.
+    /// The bounces of each path from source to receiver, a list of tuples: a wall by its index, a pole by -1 minus its
+    /// index, an edge by 2^32 plus its index, the floor by 2^33 and the ceiling by 2^33 + 1. Bounces at floor and
+    /// ceiling come last, in their own order.
     #[getter]
     fn walls<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let sequences = (0..self.paths.len()).map(|path| PyTuple::new(py, coded(self.paths.bounces(path))));
         PyList::new(py, sequences.collect::<PyResult<Vec<_>>>()?)
     }
 
-    /// The corners of a path in the plan, from source to receiver, those at floor and ceiling left out.
+    /// The corners of a path in the plan, from source to receiver, without those at floor and ceiling.
     ///
     /// Args:
-    ///     path: which one, from 0.
+    ///     path: its index, from 0.
     ///
     /// Returns:
     ///     Array of shape (n, 2), in metres; n is ``order + 2`` in a flat scene.
     ///
     /// Raises:
-    ///     EerufError: no such path.
+    ///     EerufError: an invalid path.
     ///
     /// Example:
     ///     >>> from eeruf import sim
@@ -188,7 +188,7 @@ impl Paths {
         PyArray1::from_vec(py, flat).reshape([corners.len(), 2])
     }
 
-    /// A pickle finds the paths again, which is exact and mostly faster than storing all of them.
+    /// Unpickling finds the paths again, which is exact and mostly faster than storing all of them.
     fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<(Bound<'py, PyAny>, Bound<'py, PyTuple>)> {
         let (py, this) = (slf.py(), slf.get());
         let in_room = this.contents.scene().room().is_some();

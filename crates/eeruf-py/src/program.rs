@@ -65,7 +65,7 @@ pub(crate) fn run_program(py: Python<'_>, words: Vec<OsString>) -> u8 {
 /// ``eeruf examples DIR`` writes them all into a folder.
 ///
 /// Args:
-///     name: such as ``"scenes/alcove.toml"``; the error about a name that is none lists them all.
+///     name: the example's name, such as ``"scenes/alcove.toml"``; the error for an unknown name lists them all.
 ///
 /// Raises:
 ///     EerufError: there is no such example.

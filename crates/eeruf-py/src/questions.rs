@@ -15,12 +15,12 @@ use crate::{
     watch::{Watch, control_flow},
 };
 
-/// Find whether the needs fit into a period, and the largest ``T_delta`` that does. Ctrl-C ends it.
+/// Find out whether the needs fit into a period, and the largest ``T_delta`` that fits. Ctrl-C ends it.
 ///
 /// Args:
 ///     period_us: the period, in whole ticks.
 ///     sensors: how many, 1 to 64; or a :class:`Needs`, or the path of a ring file.
-///     t_delta_us: as in :func:`design`, as are the arguments below but ``budget``.
+///     t_delta_us: as in :func:`design`, as are the arguments below except ``budget``.
 ///     min_interval_us: the least time between the firings of two neighbours.
 ///     window_us: how long a sensor listens; one for all, or a sequence.
 ///     tick_us: the grid of firing times and period, 1 or more.
@@ -34,12 +34,12 @@ use crate::{
 ///     together: groups of sensors that fire at the same instants.
 ///
 /// Returns:
-///     Whether a schedule of this period meets all needs, None if that was not decided; and a :class:`Found` with the
-///     largest ``T_delta`` of this period in ``value_us``: of the sensor with the largest, where sensors have their own
-///     and each grows by the same. Its schedule is one that meets the needs, or else the one with that ``T_delta``.
+///     True if a schedule of this period meets all needs, False if none does, None if undecided; and a :class:`Found`
+///     with the largest ``T_delta`` for this period in ``value_us``. If sensors have their own, all grow by the same
+///     amount, and the largest is returned. The schedule meets the needs if possible, or else has that ``T_delta``.
 ///
 /// Raises:
-///     EerufError: something of the wrong type or out of range; needs that make no sense, or a period that is no
+///     EerufError: an argument of the wrong type or out of range; invalid needs, or a period that is not a
 ///         whole number of ticks.
 ///
 /// Example:
@@ -85,12 +85,12 @@ pub(crate) fn fit<'py>(
     Ok((fit.fits, Found::of(&found, began, None).into_python(py)?))
 }
 
-/// Find the shortest period for 20 values of one need, from a tenth of the one given to twice as much. Ctrl-C ends it.
+/// Find the shortest period for 20 values of one need, from a tenth of the given one to twice as much. Ctrl-C ends it.
 ///
 /// Args:
 ///     need: ``"t_delta"``, ``"range"`` (the window) or ``"interval"``.
 ///     sensors: how many, 1 to 64; or a :class:`Needs`, or the path of a ring file.
-///     t_delta_us: as in :func:`design`, as are the arguments below but ``budget``. Where sensors or pairs have
+///     t_delta_us: as in :func:`design`, as are the arguments below except ``budget``. Where sensors or pairs have
 ///         their own needs, all vary by the same factor.
 ///     min_interval_us: the least time between the firings of two neighbours.
 ///     window_us: how long a sensor listens; one for all, or a sequence.
@@ -109,7 +109,7 @@ pub(crate) fn fit<'py>(
 ///     and whether the period is proven the shortest.
 ///
 /// Raises:
-///     EerufError: something of the wrong type or out of range; needs that make no sense, or too large a grid.
+///     EerufError: an argument of the wrong type or out of range; invalid needs, or too large a grid.
 ///
 /// Example:
 ///     >>> import eeruf

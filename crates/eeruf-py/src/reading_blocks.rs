@@ -7,7 +7,7 @@ use crate::{
     arguments::whole_or, memory, own, readings::Readings, simulate::Asked, simulation::Simulation, watch::Watch,
 };
 
-/// Number of periods a block has unless another number is asked for.
+/// Default number of periods in a block.
 const BLOCK_PERIODS: u32 = 10_000;
 
 /// The readings of a simulation block by block: an iterator that Ctrl-C interrupts.
@@ -44,12 +44,12 @@ impl ReadingBlocks {
     }
 }
 
-/// Like :func:`simulate`, but block by block: however long it is, it needs no more memory than a block.
+/// Simulate like :func:`simulate`, but block by block: however long it runs, it needs only the memory of a block.
 ///
 /// Args:
-///     scene: as for :func:`simulate`, and so all others.
+///     scene: as for :func:`simulate`.
 ///     method: as for :func:`simulate`.
-///     periods: for how many periods of the first robot, 1 or more.
+///     periods: the number of periods of the first robot, 1 or more.
 ///     seed: as for :func:`simulate`.
 ///     block_periods: how many periods a block has at most.
 ///     progress: as for :func:`simulate`.
@@ -58,7 +58,7 @@ impl ReadingBlocks {
 ///     An iterator of ``Readings``, which together are those of :func:`simulate`.
 ///
 /// Raises:
-///     EerufError: as for :func:`simulate`, and so all others; as for :func:`simulate`; as for :func:`simulate`.
+///     EerufError: as for :func:`simulate`.
 ///     MemoryError: a block does not fit into memory.
 ///
 /// Example:
@@ -86,7 +86,7 @@ pub(crate) fn simulate_blocks(
     let readings = expected_readings(&asked.world, block_periods.min(asked.options.periods));
     let bytes = eeruf_sim::Readings::bytes_for(readings);
     memory::check(&format!("{readings} readings"), bytes, "so fewer block_periods")?;
-    // Errors come now, not with the first block.
+    // Raise errors now, not with the first block.
     Watch::new(progress)?;
     let own = own::own(scene.py(), None, None, asked.chosen.makers.as_deref(), asked.world.robots())?;
     let simulation = Simulation::new_from(scene.py(), asked, own, true, None)?;

@@ -1,4 +1,4 @@
-//! `Readings`: what `sim.simulate` returns, as arrays.
+//! `Readings`: the result of `sim.simulate`, as arrays.
 
 use eeruf_sim::NO_PATH;
 use numpy::PyReadonlyArray1;
@@ -21,8 +21,8 @@ pub(crate) const CAUSES: [&str; 5] = ["nothing", "own", "stale", "crosstalk", "e
 /// Every reading of a simulation: arrays of equal length, in the order in which the rings emitted them. Readings
 /// pickle.
 ///
-/// Each reading comes with what caused it and with what the sensor would have read alone. Times without a value are
-/// NaN. The arrays are read-only.
+/// Each reading comes with its cause and with the reading that the sensor would have had alone. Times without a value
+/// are NaN. The arrays are read-only.
 ///
 /// Example:
 ///     >>> from eeruf import sim
@@ -64,7 +64,7 @@ impl Readings {
         self.readings.duration_s
     }
 
-    /// Number of sensors the scene has, of all robots together.
+    /// Number of sensors in the scene, over all robots.
     #[getter]
     fn sensors(&self) -> usize {
         self.readings.sensors
@@ -100,19 +100,19 @@ impl Readings {
         self.columns.get(py, 4, self.readings.fired_s.iter().copied())
     }
 
-    /// Where the sensor stood when it fired, in metres of the scene: float64.
+    /// The sensor's x coordinate in the scene when it fired, in metres: float64.
     #[getter]
     fn x_m<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.columns.get(py, 13, self.readings.x_m.iter().copied())
     }
 
-    /// Where the sensor stood when it fired, in metres of the scene: float64.
+    /// The sensor's y coordinate in the scene when it fired, in metres: float64.
     #[getter]
     fn y_m<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.columns.get(py, 14, self.readings.y_m.iter().copied())
     }
 
-    /// The sensor's heading when it fired, in radians of the scene, counter-clockwise from the x axis: float64.
+    /// The sensor's heading in the scene when it fired, in radians, counter-clockwise from the x axis: float64.
     #[getter]
     fn heading_rad<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.columns.get(py, 15, self.readings.heading_rad.iter().copied())
@@ -155,7 +155,7 @@ impl Readings {
         self.columns.get(py, 10, self.readings.path.iter().map(index))
     }
 
-    /// Every path of some reading: a dict of arrays of equal length.
+    /// The paths of all readings: a dict of arrays of equal length.
     ///
     /// ``emitter_robot``, ``emitter``, ``receiver_robot``, ``receiver`` count from 0; ``order`` is the number of
     /// bounces; ``length_m``, ``departure_rad`` and ``arrival_rad`` are in metres and radians of the scene; ``walls``
@@ -182,25 +182,25 @@ impl Readings {
         self.columns.get(py, 11, self.readings.emitted_s.iter().copied())
     }
 
-    /// The change that odometry expects since the sensor's firing before, in microseconds; 0 without odometry: int32.
+    /// The change since the sensor's previous firing that odometry predicts, in microseconds; 0 without it: int32.
     #[getter]
     fn expected_change_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.columns.get(py, 16, self.readings.expected_change_us.iter().copied())
     }
 
-    /// Returns true if the method accepts the reading, an echo or that nothing is in range: bool.
+    /// True where the method accepts the reading, an echo or a report that nothing is in range: bool.
     #[getter]
     fn is_accepted<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         self.columns.get(py, 12, (0..self.readings.len()).map(|reading| self.readings.is_accepted(reading)))
     }
 
-    /// Returns true if the reading, if accepted, would be wrong.
+    /// Find the readings that would be wrong if accepted.
     ///
     /// Args:
     ///     tolerance_us: largest difference from the reference, in microseconds.
     ///
     /// Returns:
-    ///     Array of bool.
+    ///     Array of bool, true for these.
     ///
     /// Raises:
     ///     EerufError: the tolerance is negative or not a number.
@@ -270,8 +270,8 @@ impl Readings {
         slf.py().import("eeruf._frames")?.call_method1("to_pandas", (Self::columns(slf)?,))
     }
 
-    /// All arrays as a ``polars.DataFrame``: ``kind`` and ``cause`` are enums with their names, and what has no value
-    /// is null.
+    /// All arrays as a ``polars.DataFrame``: ``kind`` and ``cause`` are enums with their names, and missing values
+    /// are null.
     ///
     /// Raises:
     ///     ImportError: polars is not installed.
@@ -304,7 +304,7 @@ impl Readings {
     ///     file: its path; NumPy's format ``.npz``, compressed.
     ///
     /// Raises:
-    ///     OSError: it cannot be written.
+    ///     OSError: the file cannot be written.
     ///
     /// Example:
     ///     >>> import io
@@ -325,14 +325,14 @@ impl Readings {
         py.import("eeruf._frames")?.call_method1("save", (file, about, columns, paths)).map(drop)
     }
 
-    /// Read what :meth:`save` wrote.
+    /// Read readings that :meth:`save` wrote.
     ///
     /// Args:
     ///     file: its path.
     ///
     /// Raises:
-    ///     OSError: it cannot be read.
-    ///     EerufError: it holds no readings.
+    ///     OSError: the file cannot be read.
+    ///     EerufError: the file holds no readings.
     ///
     /// Example:
     ///     >>> import pathlib, tempfile
@@ -347,13 +347,13 @@ impl Readings {
         file.py().import("eeruf._frames")?.call_method1("load", (file,))
     }
 
-    /// Join readings of consecutive steps or blocks, or of several robots' logs: all columns, and durations added up.
+    /// Join readings of consecutive steps or blocks, or of several robots' logs; durations add up.
     ///
     /// Args:
-    ///     parts: readings of one method and of as many sensors each.
+    ///     parts: readings of one method, all with the same number of sensors.
     ///
     /// Raises:
-    ///     EerufError: no readings, or of several methods or numbers of sensors.
+    ///     EerufError: not readings, or readings of different methods or numbers of sensors.
     ///
     /// Example:
     ///     >>> from eeruf import sim
@@ -386,18 +386,18 @@ impl Readings {
     /// Make readings from your own arrays, such as those of a drive, to summarize and save them.
     ///
     /// Args:
-    ///     sensor: the sensor of each reading, from 0; others have as many entries.
-    ///     fired_s: when it fired, in seconds, in order.
-    ///     t_echo_us: the echo time, NaN for none.
-    ///     kind: what was made of it, indices into ``eeruf.KINDS``; by default echoes are accepted, silence is clear.
-    ///     reference_us: what the sensor reads alone; by default ``t_echo_us``, as if all were right.
-    ///     duration_s: for how long; by default until the last firing.
-    ///     sensors: how many sensors there are; by default one more than the last.
-    ///     method: one of ``METHODS``, as which they count.
-    ///     columns: any others of :meth:`columns`, by name.
+    ///     sensor: the sensor of each reading, from 0; the other arrays have the same length.
+    ///     fired_s: the time of each firing, in seconds, in order.
+    ///     t_echo_us: the echo times, NaN for none.
+    ///     kind: the verdicts, indices into ``eeruf.KINDS``; by default echoes are accepted and silence is clear.
+    ///     reference_us: the readings of the sensor alone; by default ``t_echo_us``, as if all readings were right.
+    ///     duration_s: the duration; by default up to the last firing.
+    ///     sensors: the number of sensors; by default one more than the highest index.
+    ///     method: the method to record for them, one of ``METHODS``.
+    ///     columns: other columns of :meth:`columns`, by name.
     ///
     /// Raises:
-    ///     EerufError: no such column, arrays of several lengths, or values out of range.
+    ///     EerufError: an unknown column, arrays of different lengths, or values out of range.
     ///
     /// Example:
     ///     >>> from eeruf import sim

@@ -82,7 +82,7 @@ impl<'py> Asked<'py> {
         self.0.get_item(name)
     }
 
-    /// A need that must be given.
+    /// A required need.
     pub(crate) fn must(&self, name: &str) -> PyResult<Bound<'py, PyAny>> {
         let expected = "t_delta_us, min_interval_us and window_us, or a Needs or a ring file in place of all";
         self.get(name)?.ok_or_else(|| wrong(name, "None", expected))
@@ -182,7 +182,7 @@ impl<'py> Asked<'py> {
         })
     }
 
-    /// Differences between the sensors, with empty lists of `t_delta` and window if all are equal; `None` without
+    /// Differences between the sensors; a list of `t_delta` or windows is empty if all are equal. `None` without
     /// differences.
     fn uneven(&self, sensors: usize, t_delta: Vec<Micros>, window: Vec<Micros>) -> PyResult<Option<OwnedUneven>> {
         let [refire, intervals, lines, together] = UNEVEN.map(|name| self.get(name));

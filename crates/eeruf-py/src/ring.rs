@@ -30,28 +30,28 @@ use crate::{
 ///         of all other needs.
 ///     now_us: when the first period begins.
 ///     window_us: ``T_wind``: how long a sensor listens after it has fired, 1 or more. One for all, or a sequence.
-///         Needed but with a :class:`Needs`.
+///         Required unless a :class:`Needs` is given.
 ///     blanking_us: edges sooner than this after firing are ringing of the transducer, not echoes.
 ///     consecutive: the number of consecutive readings that must agree, 2 to 8.
 ///     path_change_us: P: the largest change of a foreign sound's path from one reading to the next, at
-///         most 65,534; None for ``t_delta_us``. Less makes fewer readings ambiguous where firings are late.
+///         most 65,534; None for ``t_delta_us``. Smaller values make fewer readings ambiguous if firings are late.
 ///     audible_us: R: how long sound is audible, at most 67 s; None for one period.
-///     refire_us: how soon a sensor may be triggered again, as for :func:`design`. With this, with those below or with
-///         a sequence above the ring is one of sensors that are not all alike: its schedule must keep what each needs,
-///         each listens and compares by its own numbers, and ``t_delta_us`` and ``window_us`` say the largest.
+///     refire_us: how soon a sensor may be triggered again, as for :func:`design`. With this, the arguments below or a
+///         sequence above, the sensors are not all alike: the schedule must meet the needs of each, each listens
+///         and compares by its own numbers, and ``t_delta_us`` and ``window_us`` return the largest.
 ///     intervals_us: pairs of sensors with the least time between their firings: ``[(0, 4, 9000)]``.
 ///     shared_lines: groups of sensors on one echo line, ``[(0, 3), (1, 4)]``: none fires while another listens.
 ///     together: groups of sensors that fire at the same instants, declared not to hear each other.
 ///     several_echoes: each sensor reports several echoes of a firing; of up to eight the earliest that repeats is
 ///         accepted.
-///     silence: what a firing without an echo means whose sensor has not shown by :meth:`answered` or :meth:`measured`
-///         that it listened: ``"never_free"``, ``"no_echo"`` however often; ``"needs_answer"``, ``"unanswered"``, a
-///         fault; ``"trusted"``, ``"clear"`` once repeated, as a cut wire is then.
+///     silence: how to read a firing without an echo if :meth:`answered` or :meth:`measured` has not shown that the
+///         sensor listened: ``"never_free"`` always gives ``"no_echo"``; ``"needs_answer"`` gives ``"unanswered"``, a
+///         fault; ``"trusted"`` gives ``"clear"`` once it is repeated, even for a cut wire.
 ///
 /// Raises:
-///     EerufError: something of the wrong type or out of range; the ring cannot listen like that, such as longer than
-///         the schedule lets it; or the schedule does not reject crosstalk at this ``t_delta_us`` (see
-///         ``Ring.unverified``), or breaks what a sensor needs.
+///     EerufError: an argument of the wrong type or out of range; invalid listening times, such as a window longer than
+///         the schedule allows; or a schedule that does not reject crosstalk at this ``t_delta_us`` (see
+///         ``Ring.unverified``) or does not meet a sensor's needs.
 ///
 /// Example:
 ///     >>> import eeruf
@@ -73,7 +73,7 @@ use crate::{
 #[pyclass(frozen, module = "eeruf")]
 pub(crate) struct Ring(pub(crate) Exclusive<AnyRing>);
 
-/// Most echoes of one firing.
+/// Largest number of echoes of one firing.
 pub(crate) const MAX_ECHOES: usize = 8;
 
 /// A ring with a schedule, whose sensors are alike or not, with up to `E` echoes of a firing.
@@ -104,7 +104,7 @@ pub(crate) enum Promise {
     EachSensor(Arc<RingSpec>),
 }
 
-/// A ring, its requirements on schedules, and the state of each sensor according to the ring's events.
+/// A ring, its requirements on schedules, and each sensor's state according to the ring's events.
 #[derive(Clone)]
 pub(crate) struct AnyRing {
     pub(crate) fires: Fires,
@@ -171,7 +171,7 @@ fn verify(schedule: &AnySchedule, t_delta: Micros) -> PyResult<()> {
 }
 
 impl Promise {
-    /// The schedule in the form for firing, with the limits of each sensor if it must keep those.
+    /// The schedule in the form for firing, with the limits of each sensor if these must be kept.
     fn keep(&self, schedule: &AnySchedule, t_delta: Micros) -> PyResult<(Arc<AnySchedule>, EachSensor<MAX_SENSORS>)> {
         match self {
             Self::Nothing => Ok((Arc::new(*schedule), EachSensor::NONE)),
@@ -199,7 +199,7 @@ impl AnyRing {
         Self { fires, promise, watch: SensorWatch::new(0, now), now }
     }
 
-    /// A ring with a schedule that keeps what is promised; later schedules must keep it too.
+    /// A ring with a schedule that meets the requirements; later schedules must meet them too.
     pub(crate) fn by_schedule(
         schedule: &AnySchedule,
         promise: Promise,
@@ -297,7 +297,7 @@ impl AnyRing {
         Self::raised(table!(self, "schedule", |ring| ring.change_to(kept, own_limits))?)
     }
 
-    /// Raises the error of a change, if there is one.
+    /// Raises the error of a change, if it failed.
     pub(crate) fn raised<E: Raise>(changed: Result<(), E>) -> PyResult<()> {
         changed.map_err(Raise::raise)
     }

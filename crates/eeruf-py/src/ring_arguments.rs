@@ -55,7 +55,7 @@ pub(crate) struct FlowNeeds<'a, 'py> {
 type FlowRingOf = (usize, BeliefSettings, TurnSettings, RingConfig, EachSensor<MAX_SENSORS>);
 
 impl<'py> FlowNeeds<'_, 'py> {
-    /// Checked parts, with the gaps of the ring; for a `Needs`, from its modules.
+    /// Checks the arguments, and returns the parts of the ring; with a `Needs`, they come from its modules.
     pub(crate) fn of(&self, sensors: &Bound<'py, PyAny>, settings: Option<&Bound<'_, PyAny>>) -> PyResult<FlowRingOf> {
         let &Self { ref asked, blanking_us, reach_us } = self;
         let config = |window, blanking| RingConfig::new().with_window(window).with_blanking(blanking);

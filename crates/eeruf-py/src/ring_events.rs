@@ -14,7 +14,7 @@ use crate::{
     fields::{Reduced, reduce, repr, to_dict},
 };
 
-/// Largest number of sensors.
+/// Valid indices of sensors.
 const SENSORS: RangeInclusive<u8> = 0..=MAX_SENSORS as u8 - 1;
 
 /// Fire this sensor, now.
@@ -92,11 +92,11 @@ impl Fire {
 pub(crate) struct Reading {
     /// The sensor, from 0.
     sensor: u8,
-    /// The outcome, one of ``eeruf.KINDS``; ``"accepted"`` and ``"clear"`` (nothing in range) are to be believed.
+    /// The outcome, one of ``eeruf.KINDS``; only ``"accepted"`` and ``"clear"`` (nothing in range) can be trusted.
     kind: &'static str,
     /// The time of the echo after firing, in microseconds; None without echo.
     t_echo_us: Option<u32>,
-    /// The echo time compared with, in microseconds; None if there was none.
+    /// The earlier echo time that this one was compared with, in microseconds; None if there was none.
     previous_us: Option<u32>,
     /// Number of firings since the sensor's last accepted reading: 0 for this one, None if there never was one.
     age: Option<u16>,
@@ -143,7 +143,7 @@ impl ExplainedBy {
 }
 
 impl Reading {
-    /// From a ring.
+    /// Converts a ring's reading.
     pub(crate) fn of_ring(reading: &eeruf_core::Reading) -> Self {
         let &eeruf_core::Reading { sensor, phase, period, kind, t_echo, previous, age, explained_by } = reading;
         let verdict = Verdict { kind, t_echo, previous, age, explained_by };
@@ -153,11 +153,11 @@ impl Reading {
     /// A filter's verdict on a firing.
     pub(crate) fn kind_and_t_echo(&self) -> (ReadingKind, Option<Micros>) {
         let kind = ReadingKind::ALL.into_iter().find(|kind| kind.as_str() == self.kind);
-        // A reading has one of them.
+        // Every reading has one of the kinds.
         (kind.unwrap_or(ReadingKind::First), self.t_echo_us.map(Micros::new))
     }
 
-    /// From a filter alone, which knows no phases.
+    /// Converts the verdict of a filter alone, which has no phases.
     pub(crate) fn of_filter(sensor: u8, verdict: &Verdict) -> Self {
         Self {
             sensor,
@@ -271,7 +271,7 @@ impl PeriodEnded {
         self.0.phase.0
     }
 
-    /// Largest delay with which its firings and its end were polled for, in microseconds, at most 65,535.
+    /// Largest delay of the polls for the period's firings and its end, in microseconds, at most 65,535.
     #[getter]
     fn max_late_us(&self) -> u32 {
         self.0.max_late.as_micros()
@@ -283,7 +283,7 @@ impl PeriodEnded {
         self.0.sum_late.as_micros()
     }
 
-    /// Number of readings of each kind that were emitted since the period before ended: a dict by the names in
+    /// Number of readings of each kind that were emitted since the previous period ended: a dict by the names in
     /// ``eeruf.KINDS``.
     #[getter]
     fn tally<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {

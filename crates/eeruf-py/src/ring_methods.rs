@@ -68,7 +68,7 @@ impl Ring {
     ///     silence: as for ``Ring``.
     ///
     /// Raises:
-    ///     EerufError: something of the wrong type or out of range; the ring cannot listen like that.
+    ///     EerufError: an argument of the wrong type or out of range; invalid listening times.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -105,27 +105,27 @@ impl Ring {
     /// Args:
     ///     sensors: how many, 1 to 64; or a :class:`Needs`, or the path of a ring file, in place of all needs, with the
     ///         window, rest, blanking and reach of its module.
-    ///     settings: a dict of what differs from the default. Of the plan ``least_us`` and ``most_us``, the least and
-    ///         the most quiet, ``rest_us``, for which a sensor rests, ``dice_us``, the random time in every gap, and
-    ///         ``seed``, not 0, by default another one for each ring. Of belief ``t_delta_us``, ``near_us``,
-    ///         ``path_change_us``, ``memory``, ``hold``, and ``top_speed_m_s``, which holds where :meth:`moving` says
-    ///         none; ``alone``, whether no other robot is near, and ``votes``: ``"by_motion"``, one echo is enough
-    ///         while the robot moves and is alone, and else two in a row that agree, ``"two_in_a_row"`` or
-    ///         ``"every_echo"``.
+    ///     settings: a dict of settings that differ from the default. For the plan: ``least_us`` and ``most_us``, the
+    ///         least and the most quiet; ``rest_us``, how long a sensor rests; ``dice_us``, the random time in every
+    ///         gap; and ``seed``, not 0, by default a new one for each ring. For belief: ``t_delta_us``, ``near_us``,
+    ///         ``path_change_us``, ``memory``, ``hold``; ``top_speed_m_s``, assumed while :meth:`moving` reports none;
+    ///         ``alone``, whether no other robot is near; and ``votes``: ``"two_in_a_row"``, two echoes must agree;
+    ///         ``"every_echo"``, one is enough; or ``"by_motion"``, one is enough while the robot moves and is
+    ///         alone.
     ///     now_us: when the first cycle begins.
-    ///     window_us: ``T_wind``: how long a sensor listens after it has fired, 1 or more; one for all, or each. Needed
-    ///         but with a :class:`Needs`.
+    ///     window_us: ``T_wind``: how long a sensor listens after it has fired, 1 or more; one for all, or each.
+    ///         Required unless a :class:`Needs` is given.
     ///     blanking_us: edges sooner than this after firing are no echoes.
-    ///     reach_us: R: after how long no sound is heard any more, the tail of an echo included; by default two ninths
-    ///         more than the window. The most quiet that a sensor gets.
+    ///     reach_us: R: the time after which no sound is audible, including the tail of an echo; by default two ninths
+    ///         more than the window. It is the most quiet that a sensor gets.
     ///     refire_us: how soon a sensor may be triggered again, one for all, or each: the longest holds for all.
     ///     shared_lines: groups of sensors on one echo line, ``[(0, 3), (1, 4)]``: none fires while another listens.
     ///     together: groups of sensors that fire at the same instants, declared not to hear each other.
-    ///     several_echoes: each sensor reports several echoes of a firing, of which up to eight are judged.
+    ///     several_echoes: each sensor reports several echoes of a firing, up to eight of which are judged.
     ///     silence: as for ``Ring``.
     ///
     /// Raises:
-    ///     EerufError: something of the wrong type or out of range; settings that contradict each other or the
+    ///     EerufError: an argument of the wrong type or out of range; settings that contradict each other or the
     ///         window.
     ///
     /// Example:
@@ -166,13 +166,13 @@ impl Ring {
     /// Args:
     ///     now_us: the present, 0 or more.
     ///     expected_change_us: for each sensor, the expected change of a good reading from the one before, by the
-    ///         robot's own motion: ``-2 v dt / c`` for an object approached at ``v``. None for a robot that stands.
+    ///         robot's own motion: ``-2 v dt / c`` for an object approached at ``v``. None for a robot at rest.
     ///
     /// Returns:
     ///     A ``Fire``, a ``Reading``, a ``PeriodEnded``, or None if there is nothing to do now.
     ///
     /// Raises:
-    ///     EerufError: not such a time, or not one change for each sensor.
+    ///     EerufError: an invalid time, or expected changes that are not one for each sensor.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -193,8 +193,8 @@ impl Ring {
         event.map(|event| to_python(py, &event)).transpose()
     }
 
-    /// Report how fast the robot moves and turns, to a flow ring, once a control cycle and also while it stands. Good
-    /// readings may then change by as much more. After half a second without a report ``top_speed_m_s`` is assumed.
+    /// Report to a flow ring how fast the robot moves and turns, once per control cycle, even while it stands. Good
+    /// readings may then change by that much more. After half a second without a report ``top_speed_m_s`` is assumed.
     ///
     /// Args:
     ///     speed_m_s: in m/s, up to 100 in either direction.
@@ -202,8 +202,8 @@ impl Ring {
     ///     now_us: the present, 0 or more.
     ///
     /// Raises:
-    ///     EerufError: no such speed or time; the ring fires by a schedule: its :meth:`poll` takes the change that is
-    ///         expected.
+    ///     EerufError: an invalid speed or time; the ring fires by a schedule, whose :meth:`poll` takes
+    ///         the expected change.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -226,7 +226,7 @@ impl Ring {
         Ok(())
     }
 
-    /// Time hopping was removed.
+    /// A copy continues from the same state.
     fn __copy__(&self) -> PyResult<Self> {
         Ok(Self(Exclusive::new("Ring", self.0.get()?.clone())))
     }
@@ -259,7 +259,7 @@ impl Ring {
     ///     now_us: the present, 0 or more.
     ///
     /// Raises:
-    ///     EerufError: not such a time.
+    ///     EerufError: an invalid time.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -271,22 +271,22 @@ impl Ring {
         Ok(until(ask!(self.0.get()?, |ring| ring.next_deadline()), now))
     }
 
-    /// Schedule of the present period, of a ring that fires by one.
+    /// Schedule of the present period, for a ring that fires by a schedule.
     #[getter]
     fn schedule(&self) -> PyResult<Schedule> {
         Ok(Schedule(self.0.get()?.schedule()?))
     }
 
-    /// Fire by another schedule when the present period ends. ``t_delta_us`` and ``window_us`` stay, and so does what
-    /// each sensor needs where they are not all alike.
+    /// Fire by another schedule when the present period ends. ``t_delta_us``, ``window_us`` and the needs of
+    /// single sensors are unchanged.
     ///
     /// Args:
-    ///     schedule: of as many sensors.
+    ///     schedule: a schedule for the same number of sensors.
     ///
     /// Raises:
-    ///     EerufError: no schedule, or not of as many sensors; a sensor would fire again while it still listens, or
-    ///         the schedule does not reject crosstalk at this ``t_delta_us``, or breaks what a sensor needs. The ring
-    ///         goes on as before.
+    ///     EerufError: not a schedule, or one for another number of sensors; a sensor would fire again while it
+    ///         still listens; or the schedule does not reject crosstalk at this ``t_delta_us`` or does not meet a
+    ///         sensor's needs. The ring continues as before.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -363,7 +363,7 @@ impl Ring {
         AnyRing::raised(table!(any, "audible_us", |ring| ring.set_audible(audible))?)
     }
 
-    /// Earliest time after its firing at which a reading without an echo is emitted, in microseconds: for modules that
+    /// Earliest time after a firing at which a reading without an echo is emitted, in microseconds: for modules that
     /// report over a bus or by a pulse's width after their window has closed. 0 for when it closes.
     #[getter]
     fn report_after_us(&self) -> PyResult<u32> {
@@ -378,9 +378,9 @@ impl Ring {
 
     /// The firings to come, up to the end of the next period: for hardware that fires by itself.
     ///
-    /// They are valid until one is late or the ring is changed. The loop may then be late: for each firing poll at its
-    /// instant until there is no event, so that ``Fire`` reports a firing that is done; report echoes; finally poll at
-    /// the present.
+    /// They are valid until one is late or the ring is changed. The loop itself may be late: for each firing, poll at
+    /// its instant until there is no event, so that ``Fire`` reports a completed firing; then report the echoes, and
+    /// finally poll at the present.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -400,11 +400,11 @@ impl Ring {
     /// Report an edge on the echo line of a sensor. Edges may come in any order and at any time.
     ///
     /// Args:
-    ///     sensor: which one, from 0.
+    ///     sensor: its index, from 0.
     ///     at_us: when, 0 or more.
     ///
     /// Raises:
-    ///     EerufError: no such sensor or time.
+    ///     EerufError: an invalid sensor or time.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -419,17 +419,17 @@ impl Ring {
         AnyRing::raised(act!(self.0.get()?, |ring| ring.echo(sensor, at)))
     }
 
-    /// Report an edge like :meth:`echo` that is known only to lie between two times: the line was last seen without it
-    /// at one, and with it at the other. The middle counts, and foreign sound at any time in between explains the
-    /// reading. If it may be off by more than 300 us (5 cm), the reading is ``"late"``.
+    /// Report an edge that lies somewhere between two times: the line was last seen without it at one, and first seen
+    /// with it at the other. The middle counts as in :meth:`echo`, and foreign sound at any time in between explains
+    /// the reading. If it may be off by more than 300 us (5 cm), the reading is ``"late"``.
     ///
     /// Args:
-    ///     sensor: which one, from 0.
+    ///     sensor: its index, from 0.
     ///     earliest_us: when the line was last seen without the edge, 0 or more.
     ///     latest_us: when it was first seen with it, not before that.
     ///
     /// Raises:
-    ///     EerufError: no such sensor or time; the latest is before the earliest.
+    ///     EerufError: an invalid sensor or time; the latest is before the earliest.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -454,11 +454,11 @@ impl Ring {
     /// from then, and if it is later than the poll, all later firings move by as much.
     ///
     /// Args:
-    ///     sensor: which one, from 0.
-    ///     at_us: when, 0 or more; a time that is not after the sensor's firing before is ignored.
+    ///     sensor: its index, from 0.
+    ///     at_us: when, 0 or more; a time that is not after the sensor's previous firing is ignored.
     ///
     /// Raises:
-    ///     EerufError: no such sensor or time.
+    ///     EerufError: an invalid sensor or time.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -477,10 +477,10 @@ impl Ring {
     /// ``"stuck"``.
     ///
     /// Args:
-    ///     sensor: which one, from 0.
+    ///     sensor: its index, from 0.
     ///
     /// Raises:
-    ///     EerufError: no such sensor.
+    ///     EerufError: an invalid sensor.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -495,16 +495,16 @@ impl Ring {
         of_sensor!(self, sensor, |ring| ring.stuck(sensor))
     }
 
-    /// The state of the space before a sensor, at the time of the last poll.
+    /// The state of the space in front of a sensor, at the time of the last poll.
     ///
     /// Args:
-    ///     sensor: which one, from 0.
+    ///     sensor: its index, from 0.
     ///
     /// Returns:
-    ///     A ``State``: an obstacle, clear, too close, unanswered or unknown, for how long, and why.
+    ///     A ``State``: an obstacle, clear, too close, unanswered or unknown, with its age and the reason.
     ///
     /// Raises:
-    ///     EerufError: no such sensor.
+    ///     EerufError: an invalid sensor.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -520,11 +520,11 @@ impl Ring {
     /// see ``report_after_us``.
     ///
     /// Args:
-    ///     sensor: which one, from 0.
+    ///     sensor: its index, from 0.
     ///     t_echo_us: the echo time in microseconds, or None if it listened and heard nothing.
     ///
     /// Raises:
-    ///     EerufError: no such sensor or time.
+    ///     EerufError: an invalid sensor or time.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -539,15 +539,15 @@ impl Ring {
         of_sensor!(self, sensor, |ring| ring.measured(sensor, t_echo))
     }
 
-    /// Report that a sensor has shown that it listens for the echo of its last firing, for instance by a line that
-    /// rises.
+    /// Report that a sensor has shown that it listens for the echo of its last firing, for instance by a
+    /// rising line.
     ///
     /// Args:
-    ///     sensor: which one, from 0.
-    ///     answered: False takes that back: it was a disturbance.
+    ///     sensor: its index, from 0.
+    ///     answered: False to take the report back, if it was a disturbance.
     ///
     /// Raises:
-    ///     EerufError: no such sensor.
+    ///     EerufError: an invalid sensor.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -567,13 +567,13 @@ impl Ring {
         }))
     }
 
-    /// Forget a sensor's echo, so that its next reading is compared with nothing, if the last one was false.
+    /// Forget a sensor's last echo, such as a false one, so that its next reading is compared with nothing.
     ///
     /// Args:
-    ///     sensor: which one, from 0.
+    ///     sensor: its index, from 0.
     ///
     /// Raises:
-    ///     EerufError: no such sensor.
+    ///     EerufError: an invalid sensor.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -586,10 +586,10 @@ impl Ring {
     /// Stop a sensor from firing. The reading of a firing in progress is still emitted.
     ///
     /// Args:
-    ///     sensor: which one, from 0.
+    ///     sensor: its index, from 0.
     ///
     /// Raises:
-    ///     EerufError: no such sensor.
+    ///     EerufError: an invalid sensor.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -604,10 +604,10 @@ impl Ring {
     /// Let a sensor fire again, from its next turn on. Its earlier readings are forgotten.
     ///
     /// Args:
-    ///     sensor: which one, from 0.
+    ///     sensor: its index, from 0.
     ///
     /// Raises:
-    ///     EerufError: no such sensor.
+    ///     EerufError: an invalid sensor.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -623,10 +623,10 @@ impl Ring {
     /// Returns true if a sensor fires.
     ///
     /// Args:
-    ///     sensor: which one, from 0.
+    ///     sensor: its index, from 0.
     ///
     /// Raises:
-    ///     EerufError: no such sensor.
+    ///     EerufError: an invalid sensor.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -666,14 +666,14 @@ impl Ring {
         Ok(())
     }
 
-    /// Start again with phase a at a time, or as soon as the last firings allow: after a long sleep. Firings in
-    /// progress are dropped, and earlier readings are forgotten.
+    /// Start again with phase a, for example after a long sleep: at a given time, or as soon as the last firings allow.
+    /// Firings in progress are dropped, and earlier readings are forgotten.
     ///
     /// Args:
     ///     now_us: the present, 0 or more.
     ///
     /// Raises:
-    ///     EerufError: not such a time.
+    ///     EerufError: an invalid time.
     ///
     /// Example:
     ///     >>> import eeruf

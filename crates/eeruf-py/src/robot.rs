@@ -25,58 +25,58 @@ use crate::{
     schedule::Schedule,
 };
 
-/// A robot with a ring of sensors, on an arc whose middle is ahead or wherever you put them.
+/// A robot with a ring of sensors, on an arc centred straight ahead or at places of your own.
 ///
 /// Args:
 ///     pose: (x, y, heading) in metres and radians, counter-clockwise from the x axis.
-///     sensors: how many on an arc, 1 to 64; or where each one is on the robot, as (x, y, heading). None where the ring
-///         file says it.
+///     sensors: how many on an arc, 1 to 64; or the place of each on the robot, as (x, y, heading). None if the ring
+///         file has them.
 ///     spacing_rad: the angle from one sensor to the next on the arc, in radians.
 ///     radius_m: the radius of the arc, in metres.
-///     module: of its sensors: a name such as ``"hc-sr04"``, a dict of what differs from one, such as
-///         ``{"like": "hc-sr04", "sees_to_m": 2.5}``, or a list of one for each sensor; docs/reference/modules.md has
-/// them all.
+///     module: its sensors' module: a name such as ``"hc-sr04"``, a dict of differences from one, such as
+///         ``{"like": "hc-sr04", "sees_to_m": 2.5}``, or a list with one for each sensor; docs/reference/modules.md
+///         lists them all.
 ///     gain: how the receiver's gain grows while it listens: ``"constant"``, ``"square_root"``, ``"linear"``,
 ///         ``"stepped"`` or ``"polaroid_6500"``, the steps of that module's control circuit.
 ///     beam: the pattern near 90 degrees off a sensor's axis: ``"cut_at_90"``, an endless baffle with nothing behind,
 ///         or ``"continuous"``, a baffle that ends; None for the module's own, ``"cut_at_90"`` of the
 ///         Polaroid 6500 and ``"continuous"`` of the HC-SR04.
 ///     coupling_db: the level of the sound that the mounting carries straight from sensor to sensor, relative to two
-///         that face each other as far apart, -200 to 0; None for what the patterns say.
-///     height_m: of its sensors above the floor, one for all or one each, in metres; for scenes that are not flat.
-///     body: its outline, which others' sound is reflected and shaded by: the radius of a disc, (length, width) of a
-///         box, or 3 to 8 corners (x, y) of a convex polygon, counter-clockwise, all in metres; None for none.
+///         that face each other at the same distance, -200 to 0; None to use the patterns.
+///     height_m: the sensors' height above the floor in metres, one for all or one each; for scenes that are not flat.
+///     body: its outline, which reflects and shades the sound of others: the radius of a disc, (length, width) of a
+///         box, or 3 to 8 corners (x, y) of a convex polygon, counter-clockwise, all in metres; None for no body.
 ///     period_us: ``T_p`` of the methods that bring no schedule of their own; the schedule's if there is one.
 ///     t_delta_us: ``T_delta``: consecutive readings that differ by no more are near-identical; one for all, or a list
 ///         of one for each sensor, for the robot's own schedule.
-///     window_us: ``T_wind``: how long a sensor listens; one for all, or a list as well.
+///     window_us: ``T_wind``: how long a sensor listens; one for all, or a list.
 ///     together: sets of sensors that the robot's own schedule fires at once, such as ``[[8, 9], [10, 11]]``.
-///     blanking_us: how long a sensor is deaf after it has fired, one for all or a list; the module's own unless it is
-///         given.
+///     blanking_us: how long a sensor is deaf after it has fired, one for all or a list; by default the
+///         module's own.
 ///     min_refire_us: with immediate refiring, how long a sensor rests between its echo and its next firing.
-///     audible_us: how long sound is heard after it was sent, as far as methods that fire one by one allow for it; what
-///         its modules say where ``module`` is given, or else no longer than sensors listen.
+///     audible_us: how long sound stays audible, for methods that fire one sensor at a time; by default from ``module``
+///         if that is given, or else the listening time.
 ///     path_change_us: P: the largest change of a foreign sound's path from one reading to the next, where
 ///         a table fires the ring, at most 65,534 us; None for ``t_delta_us``.
 ///     ring: a :class:`~eeruf.Needs`, or the path of a ring file, that gives modules, windows, ``T_delta``, sensors
 ///         that fire together, neighbours, ``path_change_us`` and ``audible_us``, unless these are given here.
 ///     firing: a dict with the keys of ``[firing]`` in scene files, such as ``{"turn_us": 33_000}``, for the methods
-///         that fire as sketches and modules do.
+///         that fire like sketches and modules.
 ///     start_us: when the ring begins to fire, by its own clock.
-///     schedule: what the EERUF methods fire by; None for the paper's table, scaled to the period.
+///     schedule: the schedule of the EERUF methods; None for the paper's table, scaled to the period.
 ///     neighbours: how many adjacent sensors must not fire close together, 1 to 64.
 ///     consecutive: how many readings in a row must agree, 2 to 8.
-///     odometry: whether the robot hands its ring the changes that its own motion should cause.
-///     velocity_m_s: (x, y) in the scene's frame, which it keeps for ever, in m/s.
-///     turn_rad_s: the rate of turn that it keeps, in rad/s.
+///     odometry: whether the robot tells its ring the changes of readings to expect from its own motion.
+///     velocity_m_s: a constant velocity, (x, y) in the scene's frame, in m/s.
+///     turn_rad_s: a constant rate of turn, in rad/s.
 ///     waypoints_m: points (x, y) that it drives through in straight lines, instead of a velocity.
-///     speed_m_s: how fast it does so, in m/s.
-///     clock_offset_us: what its clock shows at the start.
+///     speed_m_s: the speed through the waypoints, in m/s.
+///     clock_offset_us: the reading of its clock at the start.
 ///     transducer: an older name of ``module``.
 ///     clock_drift_ppm: rate error of its clock, positive if fast, in millionths.
 ///
 /// Raises:
-///     EerufError: something of the wrong type or out of range, or two kinds of motion at once.
+///     EerufError: an argument of the wrong type or out of range, or two kinds of motion at once.
 ///
 /// Example:
 ///     >>> from eeruf import sim
@@ -91,7 +91,7 @@ pub(crate) struct Robot {
     /// (x, y, heading) in metres and radians.
     #[pyo3(get)]
     pose: (f64, f64, f64),
-    /// Where each sensor is on the robot: (x, y, heading) in metres and radians.
+    /// The place of each sensor on the robot: (x, y, heading) in metres and radians.
     #[pyo3(get)]
     sensor_poses: Vec<(f64, f64, f64)>,
     /// The angle from one sensor to the next, in radians; None for sensors at places of their own.
@@ -114,7 +114,7 @@ impl Robot {
         }
     }
 
-    /// The keyword arguments that make it again.
+    /// The keyword arguments that recreate the robot.
     fn arguments<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyDict>> {
         let this = slf.get();
         let all = attributes(slf, &["pose"])?;
@@ -129,7 +129,7 @@ impl Robot {
             add(&["gain", "beam"])?;
         }
         add(&["coupling_db"])?;
-        // One for all stays one for all when the sensors are replaced.
+        // A common height stays common when the sensors are replaced.
         match &this.robot.heights_m[..] {
             [] => {}
             [first, others @ ..] if others.iter().all(|height_m| height_m == first) => {
@@ -412,7 +412,7 @@ impl Robot {
     fn replace<'py>(slf: &Bound<'py, Self>, changes: Option<&Bound<'py, PyDict>>) -> PyResult<Bound<'py, PyAny>> {
         let arguments = Self::arguments(slf)?;
         let given = |name: &str| changes.is_some_and(|changes| changes.contains(name).unwrap_or(false));
-        // One way to place the sensors, to move or to blank takes the place of the other.
+        // A new way to place the sensors, to move or to blank replaces the other one.
         if given("sensors") && !given("spacing_rad") && changes_places(changes)? {
             arguments.del_item("spacing_rad").or_else(missing)?;
             arguments.del_item("radius_m").or_else(missing)?;
@@ -535,7 +535,7 @@ impl Robot {
         self.robot.audible.as_micros()
     }
 
-    /// Change of a foreign sound's path from one reading to the next, in microseconds; None for ``t_delta_us``.
+    /// Largest change of a foreign sound's path between two readings, in microseconds; None for ``t_delta_us``.
     #[getter]
     fn path_change_us(&self) -> Option<u32> {
         self.robot.path_change.map(Micros::as_micros)
@@ -547,7 +547,7 @@ impl Robot {
         shown_table(py, &self.robot.firing.to_table())
     }
 
-    /// When the ring begins to fire, in microseconds.
+    /// Time when the ring begins to fire, in microseconds.
     #[getter]
     fn start_us(&self) -> u32 {
         self.robot.start.as_micros()
@@ -571,7 +571,7 @@ impl Robot {
         self.robot.consecutive
     }
 
-    /// Returns true if the ring knows the change of readings that its own motion should cause.
+    /// Returns true if the robot tells its ring the changes of readings to expect from its own motion.
     #[getter]
     fn odometry(&self) -> bool {
         self.robot.odometry
@@ -634,7 +634,7 @@ impl Robot {
     }
 }
 
-/// Returns true if a change of `sensors` is one of places, not of their number.
+/// Returns true if a change of `sensors` changes their places, not their number.
 fn changes_places(changes: Option<&Bound<'_, PyDict>>) -> PyResult<bool> {
     let sensors = changes.map(|changes| changes.get_item("sensors")).transpose()?.flatten();
     Ok(sensors.is_some_and(|sensors| sensors.try_iter().is_ok()))

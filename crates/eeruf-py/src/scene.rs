@@ -36,26 +36,26 @@ use crate::{
 ///     open: indices of openings, from which nothing comes back.
 ///     two_sided: indices of walls that reflect on both sides.
 ///     poles: array of shape (m, 3): x, y and radius.
-///     materials: of the walls, one for all or one each: ``"smooth"``, ``"painted"``, ``"soft"``, ``"perfect"`` or a
-///         :class:`Material`; smooth unless given.
-///     pole_materials: of the poles, likewise.
-///     temperature_c: of the air, in degrees Celsius, -100 to 100; the speed of sound depends on it.
-///     humidity_percent: of the air, 0 to 100.
-///     pressure_kpa: of the air.
+///     materials: the material of the walls, one for all or one each: ``"smooth"``, ``"painted"``, ``"soft"``,
+///         ``"perfect"`` or a :class:`Material`; smooth by default.
+///     pole_materials: the material of the poles, likewise.
+///     temperature_c: the air temperature in degrees Celsius, -100 to 100; the speed of sound depends on it.
+///     humidity_percent: the humidity of the air, 0 to 100.
+///     pressure_kpa: the pressure of the air.
 ///     robots: the robots that :func:`simulate` drives.
 ///     noise: True for a little jitter and fading, False for none, or a :class:`Noise`.
-///     seed: of the noise, 0 to 2^64 - 1.
-///     max_order: how many bounces :func:`simulate` follows; 6 unless it is given.
-///     physics: ``"plain"``, ``"default"``, or a dict of what differs from a ``preset``: ``shadows``, ``edges``,
+///     seed: the seed of the noise, 0 to 2^64 - 1.
+///     max_order: how many bounces :func:`simulate` follows; 6 by default.
+///     physics: ``"plain"``, ``"default"``, or a dict of differences from a ``preset``: ``shadows``, ``edges``,
 ///         ``narrow_panels``, ``range_walk``, ``interference`` (each True or False), ``fading_time_s``; see
 /// ``docs/explanation/physics.md``.
 ///     height: ``"flat"``, all sound in one plane; ``"room"``, between a floor and a ceiling at 2.6 m; or a dict of
-///         what differs from that room: ``ceiling_m``, and ``floor`` and ``ceiling`` as in ``materials``.
-///     faults: what goes wrong, dicts with the keys of ``[[fault]]`` in scene files, such as
-///         ``{"kind": "cut", "sensors": [2], "from_s": 3.0}``; docs/how-to/simulate.md has them all.
+///         differences from that room: ``ceiling_m``, and ``floor`` and ``ceiling`` as in ``materials``.
+///     faults: faults to simulate, dicts with the keys of ``[[fault]]`` in scene files, such as
+///         ``{"kind": "cut", "sensors": [2], "from_s": 3.0}``; docs/how-to/simulate.md lists them all.
 ///
 /// Raises:
-///     EerufError: an array of the wrong shape, an index of no wall, something of the wrong type or out of range;
+///     EerufError: an array of the wrong shape, an index without a wall, an argument of the wrong type or out of range;
 ///         walls that cross, have no length or are not finite, or a robot where none can stand.
 ///
 /// Example:
@@ -70,7 +70,7 @@ pub(crate) struct Scene {
     noise: eeruf_sim::Noise,
     physics: eeruf_sim::Physics,
     faults: Vec<eeruf_sim::Fault>,
-    /// Seed of all that is random.
+    /// Seed of all random numbers.
     #[pyo3(get)]
     seed: u64,
     /// Number of bounces that :func:`simulate` follows.
@@ -115,7 +115,7 @@ impl Scene {
         Python::attach(|py| warn_of(py, name, text))?;
         let robots: Vec<_> = parts.robots.iter().map(Robot::of).collect();
         if !robots.is_empty() {
-            // For the line that is to blame, where the world is.
+            // Builds the world for its errors, which name the wrong line.
             World::from_text_with(name, text, robot_ring).map_err(Raise::raise)?;
         }
         Self::of(parts, robots)
@@ -132,7 +132,7 @@ fn indices(name: &str, value: Option<&Bound<'_, PyAny>>, walls: usize) -> PyResu
     }
 }
 
-/// The keyword arguments that make a scene again.
+/// The keyword arguments that recreate a scene.
 const ARGUMENTS: [&str; 16] = [
     "walls",
     "open",
@@ -229,10 +229,10 @@ impl Scene {
     /// Read a scene file, such as those in the folder ``scenes``.
     ///
     /// Args:
-    ///     path: of the file; a schedule that it names is looked for beside it.
+    ///     path: the path of the file; a schedule that it names is looked up beside it.
     ///
     /// Raises:
-    ///     EerufError: not a path; no such file, or it says something that makes no scene: by name, value and what is
+    ///     EerufError: not a path; no such file; or an invalid scene, with the name, the value and what is
     ///         expected.
     ///
     /// Example:
@@ -248,18 +248,18 @@ impl Scene {
         Self::from_text(&path, &text)
     }
 
-    /// Read an occupancy grid, as the ROS ``map_server`` saves it: walls along the outlines of what is occupied.
+    /// Read an occupancy grid, as the ROS ``map_server`` saves it: walls along the outlines of the occupied cells.
     ///
     /// A cell is occupied if its probability is above the file's ``occupied_thresh``; an unknown one is not. Add robots
     /// with :meth:`replace`.
     ///
     /// Args:
     ///     path: of the YAML file, which names a PGM picture beside it.
-    ///     tolerance_m: how far walls may be from the edges of the occupied cells, in metres, 0 to 1000; one and a half
-    ///         cells if it is not given, which makes the stair straight that a slanted wall becomes in cells.
+    ///     tolerance_m: how far walls may be from the edges of the occupied cells, in metres, 0 to 1000; by default one
+    ///         and a half cells, which straightens the stairs that a slanted wall becomes in cells.
     ///
     /// Raises:
-    ///     EerufError: not a path, or no such tolerance; no such file, or it says something that makes no map: by name,
+    ///     EerufError: not a path, or an invalid tolerance; no such file; or an invalid map, with the name, the
     ///         value and what is expected.
     ///
     /// Example:
@@ -278,13 +278,13 @@ impl Scene {
         Self::of(crate::maps::read_map(path, tolerance_m)?, vec![])
     }
 
-    /// A scene out of the text of a scene file, as :meth:`to_toml` writes it.
+    /// Read a scene from the text of a scene file, as :meth:`to_toml` writes it.
     ///
     /// Args:
-    ///     text: the contents of a file; a schedule that it names is looked for in the present folder.
+    ///     text: the contents of a file; a schedule that it names is looked up in the present folder.
     ///
     /// Raises:
-    ///     EerufError: not a text; it says something that makes no scene: by name, value and what is expected.
+    ///     EerufError: not a string; or an invalid scene, with the name, the value and what is expected.
     ///
     /// Example:
     ///     >>> from eeruf import sim
@@ -297,7 +297,7 @@ impl Scene {
         Self::from_text(Path::new("text"), &text)
     }
 
-    /// Write a scene file of this scene: it gives the same readings, in Python and in the program.
+    /// Write this scene as a scene file, which gives the same readings in Python and in the program.
     ///
     /// Example:
     ///     >>> from eeruf import sim
@@ -312,11 +312,11 @@ impl Scene {
     /// Return the scene with these arguments changed.
     ///
     /// Args:
-    ///     changes: arguments of ``Scene``, by name. Other walls or poles have the default materials, unless those are
+    ///     changes: arguments of ``Scene``, by name. New walls or poles have the default materials, unless those are
     ///         given too, and no openings.
     ///
     /// Raises:
-    ///     EerufError: as for ``Scene``; as for ``Scene``.
+    ///     EerufError: as for ``Scene``.
     ///
     /// Example:
     ///     >>> from eeruf import sim
@@ -399,13 +399,13 @@ impl Scene {
         Noise::of(self.noise)
     }
 
-    /// Effects that are simulated: a preset's name, or a dict.
+    /// The simulated effects: a preset's name, or a dict.
     #[getter]
     fn physics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         surroundings::shown_physics(py, &self.physics)
     }
 
-    /// Floor and ceiling: ``"flat"`` without, ``"room"`` for the default, or a dict.
+    /// Floor and ceiling: ``"flat"`` for none, ``"room"`` for the default, or a dict.
     #[getter]
     fn height<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
         surroundings::shown_height(py, self.scene().room())
@@ -436,10 +436,10 @@ impl Scene {
     /// Amplitudes are for the first robot's transducers, or for a Polaroid 6500 if there is no robot.
     ///
     /// Args:
-    ///     source: (x, y) in metres, or (x, y, height) in a scene that is not flat; 0.3 m high unless it says so.
+    ///     source: (x, y) in metres, or (x, y, height) in a scene that is not flat; 0.3 m high by default.
     ///     receivers: array of shape (n, 2) or (n, 3), or one point, likewise.
-    ///     max_order: the most bounces, 0 to 1000; those at poles, floor and ceiling count. Of the last two a path has
-    ///         4 at most.
+    ///     max_order: the most bounces, 0 to 1000, including those at poles, floor and ceiling. At most 4 are at floor
+    ///         and ceiling.
     ///     max_length_m: the longest path, in metres, above 0; None for any length.
     ///     progress: True for a bar (tqdm if it is installed), or a callable that takes None and a text now and then.
     ///
@@ -447,7 +447,7 @@ impl Scene {
     ///     The paths as arrays, sorted by receiver and then by length.
     ///
     /// Raises:
-    ///     EerufError: something of the wrong type, shape or range; a point that is not finite, far from all walls or
+    ///     EerufError: an argument of the wrong type, shape or range; a point that is not finite, far from all walls or
     ///         inside something solid, too high an order, or too many paths to keep.
     ///
     /// Example:

@@ -17,8 +17,8 @@ use crate::{
     requirements::{ALIKE, Asked, UNEVEN},
 };
 
-/// When each sensor of a ring fires, in the two phases that alternate from period to period. Immutable; equal if all
-/// times are.
+/// The firing times of a ring's sensors, in the two phases that alternate from period to period. Immutable; schedules
+/// are equal if all their times are.
 ///
 /// Sensor ``x`` fires ``t_lag_us[x] + t_wait_a_us[x]`` after the beginning of an even period (phase a) and
 /// ``t_lag_us[x] + t_wait_b_us[x]`` after that of an odd one (phase b). Times are whole microseconds below 2^32;
@@ -51,13 +51,13 @@ fn tuple<'py>(py: Python<'py>, times: &[Micros]) -> PyResult<Bound<'py, PyTuple>
 const WAITS: [&str; 4] = ["period_us", "t_lag_us", "t_wait_a_us", "t_wait_b_us"];
 
 impl Schedule {
-    /// When each sensor fires in a phase, in microseconds.
+    /// Firing time of each sensor in a phase, in microseconds.
     fn t_fire<'py>(&self, py: Python<'py>, phase: Phase) -> PyResult<Bound<'py, PyTuple>> {
         let fire = |sensor| self.0.t_fire(phase, sensor).unwrap_or_default().as_micros();
         PyTuple::new(py, (0..self.0.sensors()).map(fire))
     }
 
-    /// The needs of the check.
+    /// The needs to check.
     fn asked<'py>(
         py: Python<'py>,
         call: &str,
@@ -69,7 +69,7 @@ impl Schedule {
         Asked::of(py, call, placed, needs, &[&["criterion", "window_us"], &ALIKE, more])
     }
 
-    /// Reads a text, from a file or not.
+    /// Reads a schedule from a text; the path is for messages.
     fn of_text(py: Python<'_>, file: &Path, text: &str) -> PyResult<Self> {
         let schedule = build(text, |file: ScheduleFile| file.schedule());
         let schedule = schedule.map_err(|error| EerufError::new_err(error.in_file(file).to_string()))?;
@@ -97,8 +97,8 @@ impl Schedule {
     ///
     /// Args:
     ///     period_us: the period, ``T_p``.
-    ///     t_fire_a_us: when each sensor fires in phase a, 1 to 64 times; below the period.
-    ///     t_fire_b_us: when each sensor fires in phase b, as many.
+    ///     t_fire_a_us: the firing time of each sensor in phase a, 1 to 64 times below the period.
+    ///     t_fire_b_us: the firing time of each sensor in phase b.
     ///
     /// Raises:
     ///     EerufError: a time is not a whole number of microseconds, or negative; as for ``Schedule``.
@@ -136,7 +136,7 @@ impl Schedule {
     ///         ``t_fire_a_us``, ``t_fire_b_us``.
     ///
     /// Raises:
-    ///     EerufError: not a text; the text is no TOML, a key is missing, or the numbers make no schedule.
+    ///     EerufError: not a string; the text is not TOML, a key is missing, or the numbers make no valid schedule.
     ///
     /// Example:
     ///     >>> from eeruf import Schedule
@@ -152,7 +152,7 @@ impl Schedule {
     /// Read a schedule file, such as those in the folder ``rings``.
     ///
     /// Args:
-    ///     path: of the file.
+    ///     path: the path of the file.
     ///
     /// Raises:
     ///     EerufError: not a path; no such file, a file of another kind, or as for :meth:`from_toml`.
@@ -177,7 +177,7 @@ impl Schedule {
     ///     text: one JSON object.
     ///
     /// Raises:
-    ///     EerufError: not a text; the text is no JSON, a key is missing, or the numbers make no schedule.
+    ///     EerufError: not a string; the text is not JSON, a key is missing, or the numbers make no valid schedule.
     ///
     /// Example:
     ///     >>> from eeruf import Schedule
@@ -221,13 +221,13 @@ impl Schedule {
         tuple(py, self.0.t_wait(Phase::B))
     }
 
-    /// When each sensor fires in phase a, in microseconds from the beginning of the period.
+    /// Firing time of each sensor in phase a, in microseconds from the beginning of the period.
     #[getter]
     fn t_fire_a_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         self.t_fire(py, Phase::A)
     }
 
-    /// When each sensor fires in phase b, in microseconds from the beginning of the period.
+    /// Firing time of each sensor in phase b, in microseconds from the beginning of the period.
     #[getter]
     fn t_fire_b_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         self.t_fire(py, Phase::B)
@@ -263,7 +263,7 @@ impl Schedule {
     ///     min_interval_us: the least time between the firings of two neighbours (Sec. 3.1 c).
     ///     neighbours: how many sensors in a row count as neighbours, 1 to 64.
     ///     layout: how they stand: ``"line"``, ``"ring"`` (the last beside the first), ``"blocks"`` of ``neighbours``,
-    ///         or pairs of neighbours, such as ``[(0, 1), (1, 2)]``.
+    ///         or pairs of neighbours such as ``[(0, 1), (1, 2)]``.
     ///     criterion: how to read Eqs. (13a), (13b): ``"exact"``, or as the ``"paper"`` prints them.
     ///     window_us: ``T_wind``, for which a sensor listens: it must not fire again earlier. One for all, or a
     ///         sequence.
@@ -272,13 +272,13 @@ impl Schedule {
     ///     intervals_us: pairs of sensors with the least time between their firings, whatever the layout says:
     ///         ``[(0, 4, 9000)]``; 0 for none.
     ///     shared_lines: groups of sensors on one echo line, ``[(0, 3), (1, 4)]``: none fires while another listens.
-    ///     together: groups of sensors that must fire at the same instants. No separation is asked between them.
+    ///     together: groups of sensors that must fire at the same instants. No separation is required between them.
     ///
     /// Returns:
     ///     The report, which is true if all conditions hold.
     ///
     /// Raises:
-    ///     EerufError: something of the wrong type or out of range.
+    ///     EerufError: an argument of the wrong type or out of range.
     ///
     /// Example:
     ///     >>> from eeruf.tables import TABLE_I_D
@@ -324,8 +324,8 @@ impl Schedule {
     /// Write a Rust constant for firmware, which is checked when it is compiled.
     ///
     /// Args:
-    ///     t_delta_us: what the constant is checked for; by default the most that the schedule allows.
-    ///     min_interval_us: as in :meth:`verify`, and so all others.
+    ///     t_delta_us: the ``T_delta`` the constant is checked for; by default the largest that the schedule allows.
+    ///     min_interval_us: as in :meth:`verify`.
     ///     neighbours: as in :meth:`verify`.
     ///     layout: as in :meth:`verify`.
     ///     criterion: as in :meth:`verify`.
@@ -333,7 +333,7 @@ impl Schedule {
     ///     stale_echo: as in :meth:`verify`.
     ///
     /// Raises:
-    ///     EerufError: something of the wrong type or out of range.
+    ///     EerufError: an argument of the wrong type or out of range.
     ///
     /// Example:
     ///     >>> from eeruf.tables import TABLE_I_D
@@ -353,11 +353,11 @@ impl Schedule {
         asked.check(&self.0, |needs| self.0.to_rust(needs))
     }
 
-    /// Write a C99 header with the firing times and the requirements that they were verified for.
+    /// Write a C99 header with the firing times and the requirements for which they were verified.
     ///
     /// Args:
-    ///     t_delta_us: what the header says it was verified for; by default the most that the schedule allows.
-    ///     min_interval_us: as in :meth:`verify`, and so all others.
+    ///     t_delta_us: the ``T_delta`` the times were verified for; by default the largest that the schedule allows.
+    ///     min_interval_us: as in :meth:`verify`.
     ///     neighbours: as in :meth:`verify`.
     ///     layout: as in :meth:`verify`.
     ///     criterion: as in :meth:`verify`.
@@ -365,7 +365,7 @@ impl Schedule {
     ///     stale_echo: as in :meth:`verify`.
     ///
     /// Raises:
-    ///     EerufError: something of the wrong type or out of range.
+    ///     EerufError: an argument of the wrong type or out of range.
     ///
     /// Example:
     ///     >>> from eeruf.tables import TABLE_I_D
@@ -396,7 +396,7 @@ impl Schedule {
     }
 
     fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
-        // Firing times say as much where no sensor has a lag.
+        // Without lags, the firing times are enough.
         if slf.get().0.t_lag().iter().any(|&lag| lag != Micros::ZERO) {
             return repr(slf, &WAITS);
         }

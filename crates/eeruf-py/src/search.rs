@@ -21,7 +21,7 @@ use crate::{
 /// Number of nodes of the search for waits between two checks of the clock.
 const POLL: u32 = 1 << 12;
 
-/// The paper's question: lags are given, waits are sought on a grid so that crosstalk never repeats (Sec. 3.1).
+/// A search for waits on a grid, for given lags, so that crosstalk never repeats: the paper's problem (Sec. 3.1).
 ///
 /// Args:
 ///     sensors: how many, 1 to 64.
@@ -29,7 +29,7 @@ const POLL: u32 = 1 << 12;
 ///     wait_max_us: waits are 0, one tick, two ticks, up to this.
 ///     tick_us: the grid, 1 or more.
 ///     t_lag_us: ``T_lag`` of each sensor, in whole ticks; None spreads each group of ``neighbours`` over the period,
-///         as Table I-a.
+///         as in Table I-a.
 ///     t_delta_us: ``T_delta``: consecutive readings that differ by no more are near-identical (Eq. 11).
 ///     min_interval_us: the least time between the firings of two neighbours (Sec. 3.1 c).
 ///     neighbours: how many adjacent sensors make a group, 1 to 64.
@@ -37,7 +37,7 @@ const POLL: u32 = 1 << 12;
 ///     criterion: how to read Eqs. (13a), (13b): as the ``"paper"`` prints them, or ``"exact"``.
 ///
 /// Raises:
-///     EerufError: something of the wrong type or out of range; needs that make no sense, or too large a grid.
+///     EerufError: an argument of the wrong type or out of range; invalid needs, or too large a grid.
 ///
 /// Example:
 ///     >>> import eeruf
@@ -136,10 +136,10 @@ impl WaitSearch {
     ///     limit: where to stop counting, 1 or more; None counts all.
     ///
     /// Returns:
-    ///     The number of tables, or the limit if there are as many.
+    ///     The number of tables, or the limit if there are that many or more.
     ///
     /// Raises:
-    ///     EerufError: the limit is no such number; more than can be counted.
+    ///     EerufError: an invalid limit; too many tables to count.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -150,7 +150,7 @@ impl WaitSearch {
         let limit = limit.map(|limit| whole("limit", limit, 1..=u64::MAX)).transpose()?.map(u128::from);
         let count = |memory: &mut [u32], budget: &mut Budget<'_>| Ok(self.search.count(limit, memory, budget).1);
         let count = self.run(py, u64::MAX, count, COUNT_WORDS)?;
-        // Core counts the last sensor's tables all at once, and so past the limit.
+        // Core counts all tables of the last sensor at once, so the count may exceed the limit.
         Ok(limit.map_or(count, |limit| count.min(limit)))
     }
 
@@ -168,9 +168,9 @@ impl WaitSearch {
         WaitTables(Exclusive::new("iterator of tables", Walk { search: self.search.clone(), last: None }))
     }
 
-    /// The best table: the one whose smallest interval between neighbours, or whose ``T_delta``, is largest; or whose
-    /// longest wait, or whose period for these lags, is shortest, and no longer than the one given. Ctrl-C ends the
-    /// search.
+    /// The best table: with the largest smallest interval between neighbours, with the largest ``T_delta``, with the
+    /// smallest longest wait, or with the shortest period for these lags, no longer than the given one. Ctrl-C ends
+    /// the search.
     ///
     /// Args:
     ///     objective: ``"interval"``, ``"t_delta"``, ``"waits"`` or ``"period"``.
@@ -180,7 +180,7 @@ impl WaitSearch {
     ///     The table, with the interval, ``T_delta``, longest wait or period as ``value_us``.
     ///
     /// Raises:
-    ///     EerufError: no such objective or budget; too large to search.
+    ///     EerufError: an invalid objective or budget; too large to search.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -242,7 +242,7 @@ impl WaitSearch {
     }
 }
 
-/// The problem, and the last table that was returned.
+/// The problem, and the last returned table.
 struct Walk {
     search: search::WaitSearch,
     last: Option<eeruf_core::Schedule<MAX_SENSORS>>,

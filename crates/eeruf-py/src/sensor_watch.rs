@@ -1,4 +1,4 @@
-//! `SensorWatch`: the known state of the space before each sensor, and blind sensors.
+//! `SensorWatch`: the known state of the space in front of each sensor, and blind sensors.
 
 use eeruf_core::{
     Instant, MAX_SENSORS, Micros,
@@ -15,8 +15,8 @@ use crate::{
     ring_events::{ExplainedBy, to_core},
 };
 
-/// Watches the events of a ring for the state of the space before each sensor, and for sensors whose echoes are never
-/// accepted.
+/// Watches the events of a ring for the state of the space in front of each sensor, and for sensors whose echoes are
+/// never accepted.
 ///
 /// Args:
 ///     sensors: how many, 1 to 64.
@@ -25,7 +25,7 @@ use crate::{
 ///     now_us: the present, 0 or more.
 ///
 /// Raises:
-///     EerufError: something of the wrong type or out of range.
+///     EerufError: an argument of the wrong type or out of range.
 ///
 /// Example:
 ///     >>> import eeruf
@@ -75,15 +75,15 @@ impl SensorWatch {
     /// Read an event that a poll returned. Observe every event, or at least readings and the ends of periods.
     ///
     /// Args:
-    ///     event: of ``Ring.poll``.
+    ///     event: an event that ``Ring.poll`` returned.
     ///     now_us: the time of that poll, 0 or more.
     ///
     /// Returns:
-    ///     A ``Blind`` when a sensor has just become blind, once, and again only after something was accepted; else
+    ///     A ``Blind`` when a sensor has just become blind, once until one of its readings is accepted again; else
     ///     None.
     ///
     /// Raises:
-    ///     EerufError: no event, or not such a time.
+    ///     EerufError: not an event, or an invalid time.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -100,14 +100,14 @@ impl SensorWatch {
         blind.map(|sensor| record(py, "Blind", (sensor, self.blind_after))).transpose()
     }
 
-    /// The state of the space before a sensor.
+    /// The state of the space in front of a sensor.
     ///
     /// Args:
-    ///     sensor: which one, from 0.
+    ///     sensor: its index, from 0.
     ///     now_us: the present, 0 or more.
     ///
     /// Raises:
-    ///     EerufError: no such sensor or time.
+    ///     EerufError: an invalid sensor or time.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -134,7 +134,7 @@ impl SensorWatch {
     }
 }
 
-/// The state of the space before a sensor, before conversion to Python.
+/// The state of the space in front of a sensor, before conversion to Python.
 pub(crate) struct State {
     kind: &'static str,
     t_echo_us: Option<u32>,
@@ -147,7 +147,7 @@ const KINDS: [&str; 5] = ["obstacle", "clear", "too_close", "unanswered", "unkno
 const WHYS: [&str; 5] = ["no_firing", "unsure", "rejected", "ambiguous", "no_witness"];
 
 impl State {
-    /// The state before a sensor that exists.
+    /// The state of the space in front of a sensor that exists.
     pub(crate) fn of(watch: &eeruf_core::watch::SensorWatch<MAX_SENSORS>, sensor: u8, now: Instant) -> Self {
         let [obstacle, clear, too_close, unanswered, unknown] = KINDS;
         let known =

@@ -21,19 +21,19 @@ use crate::{
 /// lock; Ctrl-C ends it.
 ///
 /// Args:
-///     scene: with one robot or more.
+///     scene: a scene with one robot or more.
 ///     method: one of ``METHODS``, or a :class:`Method`.
-///     periods: for how many periods of the first robot, 1 or more.
-///     seed: of the noise, 0 to 2^64 - 1; the scene's by default.
+///     periods: the number of periods of the first robot, 1 or more.
+///     seed: the seed of the noise, 0 to 2^64 - 1; the scene's by default.
 ///     progress: True for a bar (tqdm if it is installed), or a callable that takes the share done and a text.
 ///
 /// Returns:
 ///     Every reading.
 ///
 /// Raises:
-///     EerufError: no such method, or something of the wrong type or out of range; the scene has no robot; a ring
-///         cannot fire by the method as it should listen.
-///     MemoryError: the readings do not fit into memory; :func:`simulate_blocks` gives them bit by bit.
+///     EerufError: no such method, or an argument of the wrong type or out of range; the scene has no robot; a ring's
+///         listening times do not fit the method.
+///     MemoryError: the readings do not fit into memory; :func:`simulate_blocks` gives them block by block.
 ///
 /// Example:
 ///     >>> from eeruf import sim

@@ -35,25 +35,25 @@ use crate::{
 /// copy if a :class:`Method` makes its firings or filters.
 ///
 /// Args:
-///     scene: with one robot or more.
+///     scene: a scene with one robot or more.
 ///     method: one of ``METHODS``, or a :class:`Method`.
-///     seed: of the noise, 0 to 2^64 - 1; the scene's by default.
-///     firing: when the first robot's sensors fire, instead of by the method: a callable that takes the number of a
-///         period, from 0, and returns how long it lasts in microseconds and who fires when in it,
-///         ``(length_us, [(t_fire_us, sensor), ..])``, or the same with the phase, 0 to 7, as a third. A dict by robot
-///         for others. No sensor fires while it listens.
-///     filter: what is believed of the first robot's readings, instead of by the method: a callable that takes a
-///         :class:`FiredReading` and returns ``(kind, t_echo_us)``, or what :meth:`EchoFilter.push` returns. A dict by
-///         robot for others.
-///     mcap: a file that each step is written into, for Foxglove, Rerun and ROS 2: ranges, what is accepted, poses, the
-///         scene, each reading's path and each firing. :meth:`close` ends it, and so does ``with``.
+///     seed: the seed of the noise, 0 to 2^64 - 1; the scene's by default.
+///     firing: a callable that plans the first robot's firings in place of the method. It takes the number of a period,
+///         from 0, and returns its length in microseconds and its firings, ``(length_us, [(t_fire_us, sensor), ..])``,
+///         optionally with the phase, 0 to 7, as a third element. For other robots, a dict of callables by robot. No
+///         sensor may fire while it listens.
+///     filter: a callable that judges the first robot's readings in place of the method. It takes a
+///         :class:`FiredReading` and returns ``(kind, t_echo_us)``, or a result of :meth:`EchoFilter.push`. For other
+///         robots, a dict of callables by robot.
+///     mcap: a file to record each step in, for Foxglove, Rerun and ROS 2: ranges, accepted readings, poses, the scene,
+///         each reading's path and each firing. :meth:`close` or the end of a ``with`` block ends it.
 ///
 /// The step that called these callables raises their exceptions, and an EerufError about invalid return values. They
 /// run within a step, so they cannot query or steer the simulation.
 ///
 /// Raises:
-///     EerufError: no such method, or something of the wrong type or out of range; the scene has no robot; a ring
-///         cannot fire by the method as it should listen, or a period cannot be fired.
+///     EerufError: no such method, or an argument of the wrong type or out of range; the scene has no robot; a ring's
+///         listening times do not fit the method, or a period cannot be fired.
 ///     LogError: the file cannot be written.
 ///
 /// Example:
@@ -107,7 +107,7 @@ enum Done {
 }
 
 impl Done {
-    /// The method and its arguments.
+    /// The name of the called method, and its arguments.
     fn call<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
         match self {
             Self::Step(seconds) => ("step", seconds).into_pyobject(py),
@@ -175,7 +175,7 @@ impl Simulation {
         Arc::clone(&self.calls.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
-    /// Locks the simulation without the interpreter lock, since its holder may wait for that.
+    /// Locks the simulation without holding the interpreter lock, for which its present holder may be waiting.
     pub(crate) fn lock(&self) -> PyResult<MutexGuard<'_, UnderWay>> {
         if *self.stepping.lock().unwrap_or_else(PoisonError::into_inner) == Some(thread::current().id()) {
             let why = "a simulation under way; expected its firing and its filter to leave it alone";
@@ -250,7 +250,7 @@ impl Simulation {
     /// End the MCAP file, if one is being written; the simulation may go on.
     ///
     /// Raises:
-    ///     LogError: what was left could not be written.
+    ///     LogError: the rest could not be written.
     ///
     /// Example:
     ///     >>> from eeruf import logs, sim
@@ -285,10 +285,10 @@ impl Simulation {
     ///     seconds: how long, 0 to 10^9.
     ///
     /// Returns:
-    ///     What was read meanwhile: the readings whose windows have closed.
+    ///     The readings whose windows closed during the step.
     ///
     /// Raises:
-    ///     EerufError: no such time; a robot has moved out of the scene's reach.
+    ///     EerufError: an invalid time; a robot has moved out of the scene's reach.
     ///
     /// Example:
     ///     >>> from eeruf import sim
@@ -310,10 +310,10 @@ impl Simulation {
     ///     seconds: how long at most, 0 to 10^9.
     ///
     /// Returns:
-    ///     What was read then: one reading, several of the same moment, or none if that time passed before.
+    ///     One reading, several of the same moment, or none if the time passed without any.
     ///
     /// Raises:
-    ///     EerufError: no such time; a robot has moved out of the scene's reach.
+    ///     EerufError: an invalid time; a robot has moved out of the scene's reach.
     ///
     /// Example:
     ///     >>> from eeruf import sim
@@ -333,12 +333,12 @@ impl Simulation {
     /// Set a robot's forward speed and rate of turn from now on.
     ///
     /// Args:
-    ///     robot: which one, from 0.
+    ///     robot: its index, from 0.
     ///     v_m_s: the speed ahead in m/s, -50 to 50.
     ///     w_rad_s: the rate of turn in rad/s, counter-clockwise, -50 to 50.
     ///
     /// Raises:
-    ///     EerufError: no such robot or speed.
+    ///     EerufError: an invalid robot or speed.
     ///
     /// Example:
     ///     >>> from eeruf import sim
@@ -364,14 +364,14 @@ impl Simulation {
 
     /// Move a robot to another place at once. It keeps the speeds set last, or stands.
     ///
-    /// A ring with odometry takes the jump for motion. Free space is not checked: see ``RobotState.touches``.
+    /// A ring with odometry takes the jump for motion. The new place may be occupied: see ``RobotState.touches``.
     ///
     /// Args:
-    ///     robot: which one, from 0.
+    ///     robot: its index, from 0.
     ///     pose: (x, y, heading) in metres and radians, up to 10^5.
     ///
     /// Raises:
-    ///     EerufError: no such robot or pose.
+    ///     EerufError: an invalid robot or pose.
     ///
     /// Example:
     ///     >>> from eeruf import sim
@@ -388,17 +388,17 @@ impl Simulation {
         Ok(())
     }
 
-    /// Begin again: time 0, robots at their first poses, the scene and the schedules of the start.
+    /// Reset the simulation: time 0, and the poses, the scene and the schedules of the start.
     ///
-    /// Parts made by ``make_filter`` and ``make_firing`` are remade; callables that were arguments go on being
-    /// called as they are. An MCAP file that is being written ends.
+    /// Parts made by ``make_filter`` and ``make_firing`` are remade; callables that were arguments are
+    /// kept as they are. An MCAP file that is being written ends.
     ///
     /// Args:
-    ///     seed: of the noise from now on; the same as before by default.
+    ///     seed: the seed of the noise from now on; unchanged by default.
     ///
     /// Raises:
-    ///     EerufError: no such seed.
-    ///     LogError: what was left of the file could not be written.
+    ///     EerufError: an invalid seed.
+    ///     LogError: the rest of the file could not be written.
     ///
     /// Example:
     ///     >>> from eeruf import sim
@@ -435,13 +435,13 @@ impl Simulation {
     /// both. Readings before and after the change are not compared.
     ///
     /// Args:
-    ///     robot: which one, from 0.
+    ///     robot: its index, from 0.
     ///     schedule: a ``Schedule`` of as many sensors.
     ///
     /// Raises:
-    ///     EerufError: no such robot, or something else than a schedule; a method without such a schedule (immediate
-    ///         refiring, dither, adaptive, a firing of one's own), a schedule of another number of sensors, or one by
-    ///         which a sensor would fire again while it listens. The ring then goes on as before.
+    ///     EerufError: no such robot, or something other than a schedule; a method without such a schedule (immediate
+    ///         refiring, dither, adaptive, a custom firing), a schedule for another number of sensors, or one in
+    ///         which a sensor would fire again while it listens. The ring then continues as before.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -464,14 +464,14 @@ impl Simulation {
     }
 
     /// Change walls, poles and air from now on, for obstacles that have moved. Sound in flight arrives as it would have
-    /// before. Free space around the robots is not checked.
+    /// before. Robots are not checked for touching the new scene.
     ///
     /// Args:
-    ///     scene: whose robots, noise, seed, order and physics do not count: those of the simulation stay.
+    ///     scene: the new scene; its robots, noise, seed, order and physics are ignored.
     ///
     /// Raises:
-    ///     EerufError: something else than a scene; a sensor is within something solid or out of the scene's reach.
-    ///         Everything then stays as it was; of a robot that moves it is said when it fires.
+    ///     EerufError: not a scene; a sensor is within something solid or out of the scene's reach. Everything then
+    ///         stays as it was. For a moving robot, the error comes when it fires.
     ///
     /// Example:
     ///     >>> from eeruf import sim
@@ -564,7 +564,7 @@ impl Simulation {
     }
 
     fn __traverse__(&self, visit: PyVisit<'_>) -> Result<(), PyTraverseError> {
-        // One that is locked is being changed, and so is in use.
+        // A locked list of calls is being changed, so it is in use.
         self.calls.try_lock().map_or(Ok(()), |calls| calls.traverse(&visit))?;
         self.made_of.as_ref().map_or(Ok(()), |(_, method)| visit.call(method))
     }

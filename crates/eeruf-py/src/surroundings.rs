@@ -101,8 +101,8 @@ pub(crate) fn materials(
 /// Args:
 ///     fading_db_rms: rms change of each arrival's level, in dB, 0 to 20.
 ///     jitter_us_rms: rms error of each arrival's time, in microseconds, 0 to 10,000.
-///     bursts_per_s: how many bursts from outside are heard in a second, 0 to 10,000.
-///     burst_db: how far they are above what is just heard, in dB, -200 to 200.
+///     bursts_per_s: how many external bursts are heard per second, 0 to 10,000.
+///     burst_db: their level above the threshold of hearing, in dB, -200 to 200.
 ///
 /// Raises:
 ///     EerufError: a number out of range.
@@ -118,9 +118,9 @@ pub(crate) struct Noise {
     fading_db_rms: f64,
     /// Jitter of each arrival, root mean square, in microseconds.
     jitter_us_rms: f64,
-    /// Number of bursts from outside that are heard in a second.
+    /// Number of external bursts that are heard per second.
     bursts_per_s: f64,
-    /// Level above the threshold of hearing, in dB.
+    /// Level of the bursts above the threshold of hearing, in dB.
     burst_db: f64,
 }
 

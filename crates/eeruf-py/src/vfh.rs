@@ -19,14 +19,14 @@ const TURN_GAIN: f64 = 3.0;
 /// The vector field histogram (J. Borenstein and Y. Koren, IEEE T-RA 7(3), 1991): from a certainty grid to direction
 /// and speed.
 ///
-/// The cells around the robot become a histogram of obstacle density over 72 sectors of 5 degrees; among its valleys
-/// the one nearest the target is steered for. Directions are in the scene's frame, counter-clockwise.
+/// The cells around the robot become a histogram of obstacle density over 72 sectors of 5 degrees; the robot steers
+/// for the valley nearest the target. Directions are in the scene's frame, counter-clockwise.
 ///
 /// Args:
 ///     window: how many cells the active window has on a side, 1 to 4096.
-///     smoothing: over how many sectors to either side the histogram is smoothed (the paper's l), 0 to 35.
+///     smoothing: the number of sectors to either side over which the histogram is smoothed (the paper's l), 0 to 35.
 ///     threshold: a sector with a lower density is free; densities are in units of a fully certain cell beside the
-///         robot. The default suits robots about 0.8 m wide; smaller ones want more.
+///         robot. The default suits robots about 0.8 m wide; smaller ones need more.
 ///     wide: a valley of more sectors is wide (s_max), 1 to 72.
 ///     density_max: the density ahead at which the robot goes no faster than ``speed_min_m_s`` (h_m).
 ///     speed_max_m_s: V_max, in m/s.
@@ -34,7 +34,7 @@ const TURN_GAIN: f64 = 3.0;
 ///     turn_max_rad_s: the rate of turn at which it goes no faster than ``speed_min_m_s`` (Omega_max), in rad/s.
 ///
 /// Raises:
-///     EerufError: something of the wrong type or out of range.
+///     EerufError: an argument of the wrong type or out of range.
 ///
 /// Example:
 ///     >>> from eeruf import nav
@@ -145,7 +145,7 @@ impl Vfh {
     ///     Array of 72 densities, float64; sector k begins at k times 5 degrees.
     ///
     /// Raises:
-    ///     EerufError: no grid or no place.
+    ///     EerufError: not a grid, or an invalid place.
     ///
     /// Example:
     ///     >>> from eeruf import nav
@@ -163,13 +163,13 @@ impl Vfh {
     /// Args:
     ///     grid: an ``eeruf.nav.Himm``.
     ///     place: where the robot is, (x, y) in metres.
-    ///     target: where to, (x, y) in metres.
+    ///     target: where it should go, (x, y) in metres.
     ///
     /// Returns:
     ///     A ``Steering``, or None if every direction is blocked.
     ///
     /// Raises:
-    ///     EerufError: no grid or no point.
+    ///     EerufError: not a grid, or an invalid point.
     ///
     /// Example:
     ///     >>> from eeruf import nav
@@ -190,21 +190,21 @@ impl Vfh {
         steering.map(of_python).transpose()
     }
 
-    /// Drives from a pose to a target, for ``Simulation.set_velocity``: the farther off the heading, the slower. If
-    /// every way is blocked, it stops and turns on the spot.
+    /// Compute speeds for ``Simulation.set_velocity`` that drive from a pose to a target: the farther off the heading,
+    /// the slower. If every direction is blocked, the robot stops and turns on the spot.
     ///
     /// Args:
     ///     grid: an ``eeruf.nav.Himm``.
     ///     pose: where the robot is, (x, y, heading) in metres and radians.
-    ///     target: where to, (x, y) in metres.
-    ///     turn_rad_s: how fast it turns now, in rad/s, -50 to 50.
-    ///     turn_gain: what a steering error of a radian asks for, in rad/s, 0 to 100.
+    ///     target: where it should go, (x, y) in metres.
+    ///     turn_rad_s: its present rate of turn, in rad/s, -50 to 50.
+    ///     turn_gain: the rate of turn for a steering error of one radian, in rad/s, 0 to 100.
     ///
     /// Returns:
     ///     The speed ahead in m/s, and the rate of turn in rad/s.
     ///
     /// Raises:
-    ///     EerufError: no grid, no pose, no point, or out of range.
+    ///     EerufError: not a grid, or an invalid pose, point or number.
     ///
     /// Example:
     ///     >>> from eeruf import nav

@@ -18,7 +18,7 @@ use pyo3::{
     types::PyBool,
 };
 
-/// Interval at which Python is asked if work must stop.
+/// Interval at which Python is asked whether work must stop.
 const EVERY: Duration = Duration::from_millis(20);
 
 /// Time to wait for stopped work, which checks far more often.
@@ -29,7 +29,7 @@ thread_local! {
     static STOPPED_BY: RefCell<Option<Stop>> = const { RefCell::new(None) };
 }
 
-/// A switch that ends what :func:`_until_stopped` runs.
+/// A switch that ends a function run by :func:`_until_stopped`.
 #[pyclass(frozen, name = "_Stop", module = "eeruf._eeruf")]
 pub(crate) struct Switch(Stop);
 
@@ -64,7 +64,7 @@ pub(crate) fn control_flow(go_on: bool) -> ControlFlow<()> {
     if go_on { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
 }
 
-/// Asks Python sometimes, on the calling thread, if work must stop.
+/// Asks Python from time to time, on the calling thread, whether work must stop.
 pub(crate) struct Watch {
     progress: Option<Py<PyAny>>,
     stopped_by: Option<Stop>,
@@ -180,9 +180,9 @@ pub(crate) fn in_background<T: Send + 'static>(
                     let (share, text) = ours.reached();
                     if !watch.go_on(share, || text) {
                         ours.stop.stop();
-                        // Nothing that was ended runs on.
+                        // Wait until the ended work has stopped.
                         drop(receive.recv_timeout(PATIENCE));
-                        // The watch knows why.
+                        // The watch keeps the reason.
                         return Err(PyKeyboardInterrupt::new_err(()));
                     }
                 }

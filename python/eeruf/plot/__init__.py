@@ -2,7 +2,7 @@
 
 Every function draws into ``ax``, or into new axes if there are none, and returns the axes. Sensors are printed from 1, as in the
 paper; arguments count them from 0, as everywhere in code. Colours follow the background, so that a dark style works; they also
-differ in grey and to the colour-blind. For a column of a paper make axes of 3.5 inches and hand them in.
+differ in grey and to the colour-blind. For a column of a paper, pass axes 3.5 inches wide.
 """
 
 from eeruf.plot._animation import animation

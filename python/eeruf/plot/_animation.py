@@ -29,21 +29,21 @@ def animation(
     frames: int = 160,
     ax: Axes | None = None,
 ) -> FuncAnimation:
-    """Some periods slowed down: each sensor fires, the sound that it will hear travels its path, the reading comes in.
+    """Animate some periods in slow motion: each sensor fires, the sound that it hears travels its path, and the reading comes in.
 
     A dot is sound on its way to the sensor that hears it first. When it arrives a disc stays at the sensor for a while: blue for a
     reading that is right and accepted, vermilion for one that is wrong and accepted, open for one that is not accepted.
 
     Args:
-        scene: whose robots stand still.
-        readings: of a simulation of it.
-        first: the first period, from 0. Methods need a few periods to begin with.
+        scene: a scene whose robots stand still.
+        readings: the readings of a simulation of that scene.
+        first: the first period, from 0. Methods need a few periods to settle.
         periods: how many of the first robot's periods, 1 to 20.
         frames: how many pictures, 2 to 5,000.
-        ax: where to draw.
+        ax: the axes to draw into; new ones by default.
 
     Returns:
-        A film of matplotlib, for ``save("crosstalk.gif")`` (with ``writer="pillow"``) or ``to_jshtml()`` in a notebook. Keep it in a
+        A matplotlib animation, for ``save("crosstalk.gif")`` (with ``writer="pillow"``) or ``to_jshtml()`` in a notebook. Keep it in a
         variable until it has been saved.
 
     Raises:
@@ -72,9 +72,9 @@ def animation(
     draw_scene(scene, ax=ax)
     sound = ax.scatter([], [], s=22, color=its.green, zorder=6)
     heard = ax.scatter([], [], s=90, linewidths=1.6, zorder=5)
-    # Room for what it will say.
+    # Reserves room for the later titles.
     title = ax.set_title(" ", loc="left", fontsize="medium")
-    # An own echo is heard for a third of a period after it came in, so that the eye can follow.
+    # An echo is shown for a third of a period after it came in, so that the eye can follow.
     stays = period_s / 3
     end = max(end, max(flight.arrives for flight in flights) + stays)
     times = np.linspace(begin, end, frames)
@@ -99,7 +99,7 @@ def animation(
 
 
 class _Flight:
-    """Sound from a sensor to the one that hears it, in seconds of the simulation."""
+    """Sound on its way from one sensor to the sensor that hears it, in seconds of the simulation."""
 
     def __init__(self, way: NDArray[np.float64], leaves: float, arrives: float, verdict: str) -> None:
         self.way, self.leaves, self.arrives, self.verdict = way, leaves, arrives, verdict

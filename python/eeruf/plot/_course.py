@@ -24,19 +24,19 @@ def course(
     course: int | None = None,
     ax: Axes | None = None,
 ) -> Axes:
-    """One course of Set II from above: poles, walls, where the robot drove, and the grid that it made of its readings.
+    """Draw one course of Set II from above: poles, walls, the robot's way, and the grid made from its readings.
 
-    The two walls that are drawn heavier are smooth and make the reflective corner; the others return half of the sound. The
-    outline of the platform is drawn for every second.
+    The two thicker walls are smooth and form the reflective corner; the others return half of the sound. The outline of the
+    platform is drawn for every second.
 
     Args:
-        result: of ``eeruf.experiments.set_two``, or one of its runs.
-        method: whose run to draw; by default ``"eeruf"``, or the first method if it is not among them.
+        result: a result of ``eeruf.experiments.set_two``, or one of its runs.
+        method: the method whose run to draw; by default ``"eeruf"`` if the result has it, or else the first method.
         course: the number of the course; by default the first.
-        ax: where to draw.
+        ax: the axes to draw into; new ones by default.
 
     Returns:
-        The axes; metres, one as long in x as in y.
+        The axes, in metres, with equal scales in x and y.
 
     Raises:
         EerufError: the result has no such method or course.
@@ -78,7 +78,7 @@ def course(
         _outline(run.track[-1]), fill=False, edgecolor=its.green if finished else its.vermilion, linewidth=2, zorder=4
     )
     ax.add_patch(last)
-    # A pole of 8 mm would not be seen at its size.
+    # A pole of 8 mm would be invisible at its true size.
     ax.plot(
         run.poles[:, 0],
         run.poles[:, 1],

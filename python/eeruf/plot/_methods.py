@@ -57,20 +57,20 @@ def methods(
     names: Sequence[str] | None = None,
     ax: Axes | None = None,
 ) -> Axes:
-    """The firing methods side by side: the median over all geometries, and the middle 80 % of them.
+    """Draw the firing methods side by side: the median over all geometries, and the middle 80 % of them.
 
     Args:
-        result: of ``eeruf.experiments.set_one`` or ``set_two``; or of ``speed_sweep``, whose lines show the share of courses finished
-            over the top speed, full for EERUF's methods and dashed for others, whatever ``figure`` and ``names``.
-        figure: which figure to draw, such as "wrong_of_all", "rejected", "good_lost" or "readings_per_s".
-        names: which methods, first on top; by default all, largest median on top.
-        ax: where to draw.
+        result: a result of ``eeruf.experiments.set_one`` or ``set_two``; or of ``speed_sweep``, for the share of finished courses
+            over the top speed, full lines for EERUF's methods and dashed for others, regardless of ``figure`` and ``names``.
+        figure: the figure to draw, such as "wrong_of_all", "rejected", "good_lost" or "readings_per_s".
+        names: the methods to draw, first on top; by default all, largest median on top.
+        ax: the axes to draw into; new ones by default.
 
     Returns:
         The axes; percent for shares of readings, else the figure's own unit.
 
     Raises:
-        EerufError: no method has that figure, or there is no such method.
+        EerufError: no method has that figure, or a method is unknown.
 
     Example:
         >>> import eeruf

@@ -24,19 +24,19 @@ def readings(
     count: int = 100,
     ax: Axes | None = None,
 ) -> Axes:
-    """One sensor's readings over time: what the method accepted, rightly or wrongly, what it rejected, and what the sensor reads alone.
+    """Draw one sensor's readings over time: accepted rightly, accepted wrongly, rejected, and the readings of the sensor alone.
 
     Args:
-        readings: of ``eeruf.sim.simulate``.
-        sensor: which sensor of the ring, from 0.
-        robot: whose ring, from 0.
+        readings: the readings from ``eeruf.sim.simulate``.
+        sensor: index of the sensor on its ring, from 0.
+        robot: index of the robot, from 0.
         first: the first of the sensor's readings to draw.
         count: how many to draw.
-        ax: where to draw.
+        ax: the axes to draw into; new ones by default.
 
     Returns:
-        The axes; echo times in milliseconds over time in seconds. Readings without echo do not appear. What is off by more than
-        500 us from what the sensor reads alone is wrong.
+        The axes: echo times in milliseconds over time in seconds. Readings without echo do not appear. A reading is wrong if it
+        differs by more than 500 us from that of the sensor alone.
 
     Example:
         >>> import eeruf
@@ -82,7 +82,7 @@ def readings(
         color=its.grey,
         label="not accepted",
     )
-    # Whole marks at the top.
+    # Room for whole marks at the top.
     ax.set_ylim(0, 1.06 * ax.get_ylim()[1])
     ax.set_xlabel("time (s)")
     ax.set_ylabel(f"echo time of sensor {sensor + 1} (ms)")

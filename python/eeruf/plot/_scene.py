@@ -28,24 +28,24 @@ def scene(
     most: int = 40,
     ax: Axes | None = None,
 ) -> Axes:
-    """Walls, poles and robots from above, and the paths of sound between them (as the paper's Fig. 1).
+    """Draw walls, poles and robots from above, and the paths of sound between them (like the paper's Fig. 1).
 
-    Walls that return less are drawn thinner, openings dotted. Poles have their size, and a ring round them where that is too small
-    to be seen. A short line shows the direction of each sensor.
+    Walls that reflect less are thinner, and openings are dotted. Poles have their true size, with a ring round those that are too
+    small to be seen. A short line shows the direction of each sensor.
 
     Args:
         scene: the walls, poles and robots.
-        paths: of ``Scene.paths``; the shortest are drawn, stronger the fewer bounces they take.
-        readings: of a simulation of this scene, to draw who fooled whom: along the ways of foreign sound that was believed, from the
-            sensor that sent it to the one that took it for its own, thicker the more often. Robots stand where the scene has them,
-            so ways of moving robots are left out.
-        source: of the paths, (x, y) in metres, to mark it.
-        receivers: of the paths, shape (n, 2) in metres, to mark them.
+        paths: the result of ``Scene.paths``; the shortest are drawn, stronger the fewer bounces they take.
+        readings: the readings of a simulation of this scene, to draw the paths of foreign sound that was accepted: from the sensor
+            that sent it to the sensor that it fooled, thicker the more often. Robots are drawn at their places in the scene, so
+            paths of moving robots are left out.
+        source: the source of the paths, (x, y) in metres, to mark it.
+        receivers: the receivers of the paths, shape (n, 2) in metres, to mark them.
         most: how many paths to draw at most.
-        ax: where to draw.
+        ax: the axes to draw into; new ones by default.
 
     Returns:
-        The axes; metres, one as long in x as in y.
+        The axes, in metres, with equal scales in x and y.
 
     Example:
         >>> import eeruf
@@ -103,7 +103,7 @@ def _room(ax: Axes, its: Colours, scene: Scene) -> None:
         )
     for x, y, radius in np.asarray(scene.poles).reshape(-1, 3):
         ax.add_patch(Circle((x, y), radius, color=its.ink, linewidth=0, zorder=3))
-        # One of 8 mm would not be seen at its size.
+        # A pole of 8 mm would be invisible at its true size.
         ax.plot(x, y, marker="o", markersize=6, markerfacecolor="none", color=its.ink, linewidth=0.6, zorder=3)
 
 
@@ -116,7 +116,7 @@ def _robots(ax: Axes, its: Colours, scene: Scene) -> None:
         x, y, heading = robot.pose
         ax.plot(x, y, marker=(3, 0, np.degrees(heading) - 90), markersize=8, color=its.orange, zorder=4)
         if len(scene.robots) > 1:
-            # Behind it, where no sensor is drawn over it.
+            # Behind the robot, where no sensor covers the text.
             behind = (-13 * np.cos(heading), -13 * np.sin(heading))
             ax.annotate(
                 f"{number + 1}",
@@ -133,7 +133,7 @@ def _paths(ax: Axes, paths: Paths, most: int) -> None:
     from matplotlib import colormaps
 
     orders = np.asarray(paths.order)
-    # From the strongest against the background to the faintest.
+    # From the strongest contrast with the background to the faintest.
     ends = (1.0, 0.35) if colours(ax).dark else (0.05, 0.85)
     shades = colormaps["viridis"](np.linspace(*ends, int(orders.max(initial=0)) + 1))
     labelled: set[int] = set()
@@ -159,7 +159,7 @@ def _who_fooled_whom(ax: Axes, its: Colours, scene: Scene, readings: Readings, m
             continue
         width = 0.8 + 1.6 * count / times.max()
         ax.plot(line[:, 0], line[:, 1], color=its.vermilion, linewidth=width, alpha=0.8, zorder=2)
-        # Towards the one that was fooled.
+        # Towards the fooled sensor.
         ax.annotate(
             "",
             xy=line[-1],

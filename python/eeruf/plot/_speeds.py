@@ -15,7 +15,7 @@ _MARKERS = "osD^vPX*<>hd8"
 
 
 def speeds(result: SpeedSweep, ax: Axes | None) -> Axes:
-    """The share of courses finished over the top speed, a line for each method."""
+    """Draw the share of finished courses over the top speed, a line for each method."""
     steps = result.steps
     ax = axes(ax)
     its = colours(ax)

@@ -16,15 +16,15 @@ if TYPE_CHECKING:
 
 
 def timing(schedule: Schedule, *, window_us: int = 0, ax: Axes | None = None) -> Axes:
-    """When each sensor fires in the two phases of a schedule (as the paper's Fig. 3).
+    """Draw the firing times of each sensor in the two phases of a schedule (like the paper's Fig. 3).
 
     Args:
-        schedule: whose firing times to draw.
+        schedule: the schedule to draw.
         window_us: how long a sensor listens after it fired, in microseconds; 0 draws no windows.
-        ax: where to draw.
+        ax: the axes to draw into; new ones by default.
 
     Returns:
-        The axes; times in milliseconds over one period of phase a and one of phase b.
+        The axes: times in milliseconds over one period of phase a and one of phase b.
 
     Example:
         >>> import eeruf
@@ -42,7 +42,7 @@ def timing(schedule: Schedule, *, window_us: int = 0, ax: Axes | None = None) ->
     for phase, (times, colour) in enumerate(((schedule.t_fire_a_us, its.blue), (schedule.t_fire_b_us, its.vermilion))):
         fires_ms = phase * period_ms + np.asarray(times) / 1e3
         if window_us > 0:
-            # The windows that are open at the end are open at the beginning as well: the two phases repeat.
+            # Windows that are open at the end are also open at the beginning, since the two phases repeat.
             for left in (fires_ms, fires_ms - 2 * period_ms):
                 ax.barh(
                     np.arange(1, sensors + 1), window_us / 1e3, left=left, height=0.62, color=its.window, linewidth=0

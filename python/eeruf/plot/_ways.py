@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from eeruf._types import HeardPaths
     from eeruf.sim import Robot, Scene
 
-# Ways of the same order that differ by less are one: a millimetre is 3 us of sound.
+# Paths of the same order whose lengths differ by less count as one: a millimetre is 3 us of sound.
 _ALIKE_M = 1e-3
 
 
@@ -25,7 +25,7 @@ def sensor_places(robot: Robot) -> NDArray[np.float64]:
 
 
 def way(scene: Scene, heard: HeardPaths, path: int) -> NDArray[np.float64] | None:
-    """Return the corners of the path of some reading, shape (n, 2), emitter first; None if its robots stood
+    """Return the corners of a reading's path, shape (n, 2), emitter first; None if the robots were
     elsewhere.
     """
     ends = []

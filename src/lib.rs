@@ -1,11 +1,11 @@
-//! The program `eeruf`: design, verify and study firing schedules, and see what the filter makes of recorded readings.
+//! The program `eeruf`: designs, verifies and studies firing schedules, and runs the filter on recorded readings.
 //!
-//! `commands` has one file for each verb; `files` is what they read, `report` what they print and draw, `console` the
-//! terminal. What the program can do, other programs do with the libraries that it stands on: [`eeruf_core`],
-//! [`eeruf_design`] and [`eeruf_sim`]. Here is only what starts it, so that the Python package can hold it too, its
-//! example files, and what writes a simulation into an MCAP file while it goes on.
+//! `commands` has one file for each verb; `files` reads their input, `report` prints and draws, and `console` is the
+//! terminal. Other programs can do the same with the libraries on which this one is built: [`eeruf_core`],
+//! [`eeruf_design`] and [`eeruf_sim`]. The public part only starts the program, so that the Python package can contain
+//! it too, gives its example files, and records a simulation as an MCAP file while it runs.
 
-// Doc comments of arguments are what --help prints in a terminal, where backticks only disturb.
+// --help prints the doc comments of arguments in a terminal, where backticks would only disturb.
 #![allow(clippy::doc_markdown)]
 // Standard output and standard error have one writer, `console`: `println!` and `eprintln!` would panic where the disk
 // is full.
@@ -32,11 +32,11 @@ use crate::files::write::check_outputs;
 /// The exit code after Ctrl-C: 128 and the number of its signal.
 const STOPPED: u8 = 130;
 
-/// Runs the program with these arguments, of which the first is its own name, and gives its exit code: 0 for yes, 1 for
+/// Runs the program with these arguments, its own name first, and returns its exit code: 0 for yes, 1 for
 /// no (not verified, infeasible), 2 for bad input, which is named in one line on standard error, 3 if a search ended
 /// before its answer, 74 if the output cannot be written, 130 if Ctrl-C ended it; what was done until then is printed.
 ///
-/// It takes the process for its own: Ctrl-C ends what it does, and so does a pipe whose reader went away.
+/// It assumes that it owns the process: Ctrl-C ends the command, and so does a pipe whose reader has gone.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     sigpipe::reset();
     console::set(console::Settings::default());

@@ -1,4 +1,4 @@
-//! The program `eeruf`; the library of the same name is all of it.
+//! The program `eeruf`: it only calls the library of the same name.
 
 use std::process::ExitCode;
 

@@ -151,7 +151,7 @@ fn bare(name: &str) -> String {
 /// Returns the unknown option or argument, and a suggestion.
 fn unknown(thing: String, suggested: Option<String>, words: &[String], command: &clap::Command) -> (String, String) {
     let has = |command: &clap::Command, long: &str| command.get_arguments().any(|arg| arg.get_long() == Some(long));
-    // A negative number looks like an option; the word before it is the one to blame.
+    // A negative number looks like an option; the error is about the word before it.
     if let Some(option) = thing.parse::<f64>().ok().and_then(|_| before(words, &thing)) {
         return (option, format!("`{thing}`; expected no negative number"));
     }

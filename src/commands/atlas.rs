@@ -1,4 +1,4 @@
-//! `eeruf atlas`: the file of rings whose shortest period is known.
+//! `eeruf lab atlas`: the file of rings whose shortest period is known.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, OpenOptions};
@@ -19,13 +19,13 @@ use crate::report::watch::Watch;
 
 /// Make the atlas of shortest periods that `design` answers from: rings of 2 to 32 sensors, each with its schedule.
 ///
-/// Rows are appended to FILE one by one, so that it can be ended at any time and takes up where it stopped. Any number
-/// of processes may write to the same file at once, on one machine, each with its share: --shard 1/3, 2/3, 3/3. When
-/// the last ring is done, the file is sorted. Exit code 0 if every ring of the share is done, 1 if it was ended before,
-/// 2 for bad input.
+/// Rows are appended to FILE one by one, so that the command can be stopped at any time and continues later. Several
+/// processes on one machine may write to the same file at once, each with its share: --shard 1/3, 2/3, 3/3. When
+/// the last ring is done, the file is sorted. Exit code 0 if every ring of the share is done, 1 if it was stopped
+/// before, 2 for bad input.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// The file; without one, that which this program carries is drawn or printed
+    /// The file; without it, the atlas in this program is drawn or printed
     #[arg(value_name = "FILE")]
     file: Option<PathBuf>,
     /// Draw period over number of sensors, as SVG or, if the name ends in .png, as PNG
@@ -35,7 +35,7 @@ pub(crate) struct Args {
     /// new certificates; by default, none is searched
     #[arg(long, value_name = "NODES", requires = "file", conflicts_with = "shard")]
     again: Option<u64>,
-    /// Only this share of the rings, of this many
+    /// Search only part I of N of the rings
     #[arg(long, value_name = "I/N", default_value = "1/1")]
     shard: Shard,
     /// Only rings of up to this many sensors

@@ -13,15 +13,15 @@ use crate::report::watch::Watch;
 
 /// Proof of a design's period.
 pub(crate) struct Written {
-    /// The file's text, or why there is none.
+    /// The file's text, or the reason why there is none.
     text: Result<String, String>,
     /// The claim that was proven, for the report.
     claim: String,
 }
 
 impl Written {
-    /// Proves that the design's period is the shortest, or that none is below the search's bound; a lower bound, if
-    /// budget and time do not suffice for that.
+    /// Proves that the design's period is the shortest, or that none is below the search's bound, or else a lower
+    /// bound within budget and time.
     pub(crate) fn new(design: &RingDesign, budget: usize, watch: &mut Watch) -> Self {
         let go_on = |nodes| watch.go_on(|| format!("certificate: {nodes} nodes"));
         match design.prove(budget, go_on) {

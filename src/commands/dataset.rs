@@ -1,4 +1,4 @@
-//! `eeruf dataset`: simulated readings with the cause of each.
+//! `eeruf lab dataset`: simulated readings with the cause of each.
 
 use std::path::{Path, PathBuf};
 
@@ -17,12 +17,12 @@ use crate::report::watch::Watch;
 
 /// Write simulated readings with ground truth, in alcoves and on courses of poles.
 ///
-/// For each reading: what the sensor would have read alone, and whose sound it was.
+/// Each reading comes with the sensor's reading alone and with the source of its sound.
 ///
 /// docs/how-to/dataset.md is its data card. The same arguments write the same files.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// The folder, which is made
+    /// The folder to create
     #[arg(value_name = "OUT")]
     out: PathBuf,
     /// Number of alcoves of Set I
@@ -37,7 +37,7 @@ pub(crate) struct Args {
     /// Number of periods of 60 ms in each alcove
     #[arg(long, value_name = "N", default_value_t = 500, value_parser = clap::value_parser!(u32).range(1..=100_000))]
     periods: u32,
-    /// Effects that are simulated: plain, or default (see docs/explanation/physics.md)
+    /// Simulated effects: plain, or default (see docs/explanation/physics.md)
     #[arg(long, value_name = "PRESET", default_value = "default")]
     physics: Physics,
 }

@@ -34,20 +34,20 @@ use crate::report::watch::Watch;
 /// Say how to fire a ring, what that buys and how to get it.
 ///
 /// The ring is fired in every way (one by one, at once, in groups, in two phases, by flow) in seeded
-/// rooms of eight kinds, standing or --driving. The way recommended is right most of the time among those that keep
-/// foreign sound below --wrong and leave no sensor blind. The answer lists what it depends on.
+/// rooms of eight kinds, standing or --driving. Among the ways that keep foreign sound below --wrong and leave
+/// no sensor blind, the recommended one is right most of the time. The answer lists its assumptions.
 ///
-/// --program writes a folder that builds, and --emit rust, c and arduino the settings alone, for the best way of those
-/// that a program can have: one by one, groups, two phases, flow. --period-only and --emit toml write the shortest
-/// schedule of two phases. Among schedules of one period it prefers a larger T_delta, then a larger smallest interval,
-/// then evener firing.
+/// --program writes a folder that builds, and --emit rust, c or arduino writes the settings alone, for the best way
+/// that a program can use: one by one, groups, two phases or flow. --period-only and --emit toml write the shortest
+/// schedule of two phases. Among schedules of one period, the command prefers a larger T_delta, then a larger smallest
+/// interval, then evener firing.
 ///
 /// Four lines are enough for a ring file: sensors, module, layout and speed_m_s. The sensors' places (spacing_deg and
 /// radius_m, or poses, or urdf and links) make the answer the robot's own. Instead of the module it may give times
-/// (t_delta_us, min_interval_us, window_us), or what they follow from (jitter_us, speed_m_s, crosstalk_range_m,
-/// max_range_m, retrigger_us, temperature_c). Other keys are for sensors that are not all alike, share lines or fire
-/// together, for slow controllers and for layouts: docs/reference/ring-files.md has all. Sensors count from 0 in it.
-/// Pairs that cannot hear each other, by module and places, are no neighbours, unless layout names them.
+/// (t_delta_us, min_interval_us, window_us), or the values that determine them (jitter_us, speed_m_s,
+/// crosstalk_range_m, max_range_m, retrigger_us, temperature_c). Other keys are for sensors that are not all alike,
+/// share lines or fire together, for slow controllers and for layouts: docs/reference/ring-files.md lists all. Sensors
+/// count from 0. Pairs that module and places keep from hearing each other are not neighbours unless layout names them.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// The ring
@@ -66,7 +66,7 @@ pub(crate) struct Args {
     /// checker/check_period.py
     #[arg(long, hide_short_help = true, value_name = "FILE")]
     certificate: Option<PathBuf>,
-    /// Number of nodes that the certificate's proof may have; if they do not suffice, it certifies the bound that they
+    /// Largest number of nodes in the certificate's proof; if they do not suffice, it certifies the bound that they
     /// prove
     #[arg(long, hide_short_help = true, default_value_t = 1_000_000, value_name = "NODES")]
     certificate_budget: usize,
@@ -74,8 +74,8 @@ pub(crate) struct Args {
     /// point of a curve
     #[arg(long, hide_short_help = true, value_name = "NODES")]
     budget: Option<u64>,
-    /// Find what fits into this period, in microseconds: whether the ring's needs do, and the largest T_delta; by
-    /// default the shortest period. Exit code 1 if they do not, 3 if that was not decided
+    /// Find out whether the ring's needs fit into this period, in microseconds, and the largest T_delta that fits; by
+    /// default the shortest period is found. Exit code 1 if the needs do not fit, 3 if that was not decided
     #[arg(long, hide_short_help = true, value_name = "US", conflicts_with_all = ["certificate", "curve"])]
     #[arg(value_parser = clap::value_parser!(u32).range(1..))]
     period: Option<u32>,
@@ -87,11 +87,11 @@ pub(crate) struct Args {
     /// Search even where the atlas knows the shortest period
     #[arg(long, hide_short_help = true)]
     no_atlas: bool,
-    /// Time limit of the command, in seconds, before it gives the best schedule so far; by default none. The
-    /// certificate then has what time is left, and states the bound that follows without a search if there is none
+    /// Time limit of the command, in seconds, after which it gives the best schedule so far; by default none. The
+    /// certificate gets the time that is left; without any, it states the bound that needs no search
     #[arg(long, hide_short_help = true, value_name = "S", value_parser = seconds)]
     time_limit: Option<Duration>,
-    /// Print the shortest period of two phases too: its proof, what it hangs on, and the schedule
+    /// Print the shortest period of two phases too: its proof, its limits, and the schedule
     #[arg(long, conflicts_with_all = ["period", "curve", "program"])]
     proof: bool,
     /// Print every way of firing in every kind of room too
@@ -173,7 +173,7 @@ struct Answered<'a> {
     rooms: Option<RoomsOrNot<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     how: Option<How>,
-    /// Times until the way sees what appears, and its false stops.
+    /// The time until the way sees an object that appears, and its false stops, under each condition.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     conditions: Vec<UnderCondition>,
     /// Pairs of neighbours, by number, that do not hear each other in their places.
@@ -181,7 +181,7 @@ struct Answered<'a> {
     not_neighbours: &'a [(usize, usize)],
 }
 
-/// The shortest period in short, beside the ways of firing.
+/// A summary of the shortest period, beside the ways of firing.
 #[derive(Serialize)]
 struct PeriodJson {
     value_us: Option<u32>,
@@ -234,7 +234,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         Some(Form::Json) => rooms::conditions(&args.in_rooms, &design.spec, rooms.as_ref(), &mut watch)?,
         _ => vec![],
     };
-    // A schedule file holds a table, which flow has not.
+    // A schedule file holds a table, and flow has none.
     let emits = !args.period_only && matches!(args.form(), Some(Form::Source(form)) if form != emit::Form::Toml);
     let way = emits.then(|| rooms::recommended(&args.in_rooms, &spec, &design, &mut watch)).transpose()?;
     drop(watch);
@@ -349,7 +349,7 @@ fn fit(args: &Args, spec: &RingSpec, period: Micros) -> Result<Answer, InputErro
         Some(false) => Answer::No,
         None => Answer::NotDecided,
     };
-    // Firmware gets only what meets the needs.
+    // Only a schedule that meets the needs goes into firmware.
     let schedule = fit.schedule.filter(|_| fit.fits == Some(true));
     if let (Some(file), Some(schedule)) = (&args.svg, &schedule) {
         draw::timing_diagram(schedule, &requirements).save(file)?;

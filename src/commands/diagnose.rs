@@ -18,14 +18,14 @@ use crate::report::watch::Watch;
 
 /// Find in a ring's own log which sensors fool each other, and what is broken.
 ///
-/// For each path: its length, since when it is heard and how sure it is. Also the phases in which sensors are blind,
-/// and what to change.
+/// Prints the length and the certainty of each path, and the time from which it is heard; also the phases in which
+/// sensors are blind, and what to change.
 ///
-/// The log is CSV with the columns sensor, fired_us, period, phase and t_echo_us, one row for each firing: when it was,
-/// in microseconds of one clock, and the raw time to the first echo, empty without one. Sensors, periods and phases
-/// count from 0. A column `reading` may say what the ring made of it (`rejected`). `eeruf study --log` writes such a
-/// log. Messages `eeruf_msgs/msg/Firing` in an MCAP file are read as well. A ring whose waits are random shows most;
-/// with two phases senders cannot be distinguished.
+/// The log is CSV with the columns sensor, fired_us, period, phase and t_echo_us, one row for each firing: its time in
+/// microseconds of one clock, and the raw time to the first echo, empty without one. Sensors, periods and phases
+/// count from 0. A column `reading` may have the ring's verdict (`rejected`). `eeruf study --log` writes such a
+/// log. Messages `eeruf_msgs/msg/Firing` in an MCAP file are read as well. A ring with random waits shows most;
+/// with two phases, senders cannot be distinguished.
 ///
 /// The exit code is 1 if something is broken.
 #[derive(clap::Args)]
@@ -36,11 +36,11 @@ pub(crate) struct Args {
     /// The fixed schedule that the ring fires by: for jitter, lateness and drift
     #[arg(long, value_name = "SCHEDULE.toml")]
     schedule: Option<PathBuf>,
-    /// Largest difference between a reading and what a path predicts, in microseconds; by default four times the
-    /// scatter that the log's readings have, at least 75
+    /// Largest difference between a reading and its path's prediction, in microseconds; by default four times the
+    /// scatter of the log's readings, at least 75
     #[arg(long, value_name = "US", value_parser = clap::value_parser!(u32).range(1..=5000))]
     tolerance_us: Option<u32>,
-    /// Time for which sound is followed, in microseconds
+    /// Longest travel time of sound to consider, in microseconds
     #[arg(long, value_name = "US", default_value_t = 80_000)]
     #[arg(value_parser = clap::value_parser!(u32).range(1000..=1_000_000))]
     max_travel_us: u32,

@@ -13,7 +13,7 @@ use crate::files::write::{make_folder, write};
 /// The checker of certificates in Python is among them. The commands of the documents run in that folder.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Write scenes/, rings/ and checker/ into this folder; files that are there already stay as they are
+    /// Write scenes/, rings/ and checker/ into this folder; existing files are kept
     #[arg(value_name = "DIR")]
     folder: Option<PathBuf>,
 }

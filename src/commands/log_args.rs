@@ -21,10 +21,10 @@ pub(crate) struct LogArgs {
     #[arg(long, hide_short_help = true, default_value_t = 5.0, value_name = "M", value_parser = positive)]
     no_echo_m: f64,
     /// Text: a value that means no echo, a number in the log's unit or a word; may be given several times. By default
-    /// 0, numbers below 0, and a greatest number that repeats
+    /// 0, numbers below 0, and a repeated greatest number
     #[arg(long, value_name = "VALUE", allow_hyphen_values = true)]
     no_echo: Vec<String>,
-    /// Text: the names of the columns in their order, parted by commas; `-` leaves one out; by default
+    /// Text: the names of the columns in order, with commas between; `-` leaves one out; by default
     /// the log's header
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     columns: Vec<String>,
@@ -40,14 +40,14 @@ pub(crate) struct LogArgs {
     /// Text: the unit of the ranges; ms and us are milli- and microseconds from firing to echo; by default guessed
     #[arg(long, hide_short_help = true, value_name = "UNIT", value_parser = unit(&RangeUnit::NAMES))]
     range_unit: Option<RangeUnit>,
-    /// Text: the column that says whose reading a row is; needs one column with ranges; by default
+    /// Text: the column with the sensor of each row; needs one column with ranges; by default
     /// guessed
     #[arg(long, hide_short_help = true, value_name = "COLUMN")]
     sensor: Option<String>,
     /// Bags: read this topic only, whatever its type; may be given several times; by default all topics with ranges
     #[arg(long, value_name = "TOPIC")]
     topic: Vec<String>,
-    /// Bags: read numbers of a field as ranges in a unit, as `--field /sonars distance_mm[] mm`; by default
+    /// Bags: read numbers of a field as ranges in a unit, such as `--field /sonars distance_mm[] mm`; by default
     /// ranges are messages of their own types
     #[arg(long, hide_short_help = true, num_args = 3, value_names = ["TOPIC", "FIELD", "UNIT"])]
     field: Vec<String>,
@@ -133,7 +133,7 @@ pub(crate) fn tell_damage(file: &Path, report: &Report) -> Result<(), InputError
     }
     if report.sensors.is_empty() {
         let mut found = left_out(report);
-        // Of a text the columns say more than its form.
+        // The columns of a text tell more than its form.
         if report.skipped.iter().any(|topic| topic.why.contains("--range")) {
             found.retain(|said| said.contains("--range"));
         }

@@ -1,4 +1,4 @@
-//! `eeruf logs`: finds out from any log if sensors read each other's sound.
+//! `eeruf logs`: finds out from any log whether sensors read each other's sound.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
@@ -16,16 +16,16 @@ use crate::report::json::to_json;
 use crate::report::table::markdown;
 use crate::report::watch::Watch;
 
-/// Do the sensors of a log read each other's sound? The answer, whom it concerns, what to do, and why.
+/// Find out whether a log's sensors read each other's sound, which ones, what to do, and why.
 ///
-/// Reads whatever there is, from a file or, by `-`, from a pipe: lines of a serial monitor, tables, JSON, MCAP, ROS 1
-/// and ROS 2 bags, ArduPilot's .BIN and .tlog, PX4's .ulg, firings of a ring, each also packed by gzip, bzip2 or zstd.
-/// What is guessed is printed with the option that overrides it.
+/// Reads a file, or a pipe with `-`: lines of a serial monitor, tables, JSON, MCAP, ROS 1 and ROS 2 bags, ArduPilot's
+/// .BIN and .tlog, PX4's .ulg, or firings of a ring, each also compressed by gzip, bzip2 or zstd. Every guess is
+/// printed with the option that overrides it.
 ///
-/// With --schedule the log is one of firings, and its paths and timing are told; --ring-out reads a measuring run, and
-/// --accepted tells what the filter would have made of each reading.
+/// With --schedule the log is one of firings, and its paths and timing are printed; --ring-out reads a measuring run,
+/// and --accepted counts the readings that the filter would have accepted.
 ///
-/// The exit code is 1 for crosstalk, 0 if none is seen, and 3 if the log cannot tell; 2 if it is not understood.
+/// The exit code is 1 for crosstalk, 0 if none is seen, and 3 if the log cannot tell; 2 if the log is not understood.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// The log, or - for standard input
@@ -33,13 +33,13 @@ pub(crate) struct Args {
     file: PathBuf,
     #[command(flatten)]
     log: LogArgs,
-    /// A log of firings: the fixed schedule that the ring fires by, for who fools whom, drift and jitter
+    /// For a log of firings: the ring's fixed schedule, to find who fools whom, drift and jitter
     #[arg(long, value_name = "SCHEDULE.toml", conflicts_with_all = ["ring_out", "out", "accepted"])]
     schedule: Option<PathBuf>,
     /// A measuring run: write a ring file for `design`, in which sensors that hear each other are neighbours
     #[arg(long, value_name = "RING.toml", conflicts_with_all = ["out", "accepted"])]
     ring_out: Option<PathBuf>,
-    /// Write the ranges as MCAP, and beside each topic `TOPIC/accepted`: what the filter accepts
+    /// Write the ranges as MCAP, and for each topic `TOPIC/accepted` with the accepted ones
     #[arg(long, value_name = "FILE.mcap")]
     out: Option<PathBuf>,
     /// Count what the filter would have accepted of each sensor
@@ -126,7 +126,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
 
 /// Adds pairs of sensors with crosstalk, from a log of firings with changing lags.
 fn by_firings(log: &FiringLog, names: &[String], found: &mut Examination) {
-    /// A sensor is fooled if this share of its readings is another's sound, surely.
+    /// Share of a sensor's readings that must surely be another's sound for the sensor to count as fooled.
     const FOOLED: f64 = 0.05;
     let keep_going = Watch::new().asked(|| format!("{} firings", log.firings.len()));
     let diagnosis = diagnose_while(log, &Settings::of(log), &keep_going);

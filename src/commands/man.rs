@@ -13,7 +13,7 @@ use crate::files::write::make_folder;
 /// Write man pages, one for the program and one for each verb.
 #[derive(clap::Args)]
 pub(crate) struct Args {
-    /// Folder for the pages, as ~/.local/share/man/man1
+    /// Folder for the pages, such as ~/.local/share/man/man1
     #[arg(value_name = "DIR", required_unless_present = "markdown")]
     folder: Option<PathBuf>,
     /// Print all verbs and options as one document in Markdown

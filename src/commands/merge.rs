@@ -1,4 +1,4 @@
-//! `eeruf merge`: joins the parts of an experiment.
+//! `eeruf lab merge`: joins the parts of an experiment.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -13,7 +13,7 @@ use super::experiment::{Part, Shard, merged};
 use super::{Cli, LabVerb, Verb};
 use crate::files::error::InputError;
 
-/// Join the parts that `eeruf experiment --shard` printed: bit for bit the undivided run.
+/// Join the parts that `eeruf lab experiment --shard` printed to the undivided run, bit for bit.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// The parts, in any order

@@ -2,7 +2,7 @@
 
 use eeruf_sim::Method;
 
-/// Returns the methods asked for, in the order of the tables; if none is named the usual ones, and those of sketches if
+/// Returns the requested methods in the order of the tables; by default the usual ones, with those of sketches if
 /// `sketched`.
 pub(crate) fn chosen(asked: &[Method], sketched: bool) -> Vec<Method> {
     let usual = |method: &Method| asked.is_empty() && !method.is_on_demand() && (sketched || !method.is_sketch());

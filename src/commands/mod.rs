@@ -1,6 +1,6 @@
 //! One file for each verb: its arguments, and their execution.
 //!
-//! Commands read with `files`, ask the libraries, and hand what they found to `report`; neither knows of them.
+//! Commands read with `files`, call the libraries, and pass the results to `report`; both know nothing of commands.
 
 /// The end of a command's help: an example, and the exit codes.
 macro_rules! help {
@@ -49,7 +49,7 @@ pub(crate) const STUDY: &str = help!("study scenes/alcove.toml --method sequenti
 const CODES: &str = "Exit codes: 0 fine; 1 the answer is no; 2 bad input; 3 not decided; 74 the output cannot be \
                      written; 130 stopped by Ctrl-C";
 
-/// Builds the command line. The authors' own commands are under `lab`, and hidden under their old names.
+/// Builds the command line. The authors' own commands are under `lab`, and also, hidden, under their old names.
 pub(crate) fn program() -> clap::Command {
     let is_old = |name: &str| LabVerb::has_subcommand(name);
     Cli::command().mut_subcommands(|below| if is_old(below.get_name()) { below.hide(true) } else { below })
@@ -74,7 +74,7 @@ pub(crate) struct OutputArgs {
     /// Print no warnings
     #[arg(long, short, global = true)]
     quiet: bool,
-    /// Take a warning for an error: exit code 2
+    /// Treat warnings as errors: exit code 2
     #[arg(long, hide_short_help = true, global = true)]
     deny_warnings: bool,
     /// Print tables and lines as wide as they are; by default they fit the terminal, or COLUMNS if it is set
@@ -105,7 +105,7 @@ impl OutputArgs {
     }
 }
 
-/// Answer of a command, and with it the exit code.
+/// Answer of a command, which decides the exit code.
 pub(crate) enum Answer {
     /// Exit code 0.
     Yes,
@@ -151,7 +151,7 @@ pub(crate) enum Verb {
     Man(man::Args),
     #[command(after_help = help!("licenses", "0 printed"))]
     Licenses(licenses::Args),
-    /// Run what eeruf's authors measure with: experiments, the atlas, data sets, paths
+    /// Run the commands of eeruf's authors: experiments, the atlas, data sets, paths
     Lab {
         #[command(subcommand)]
         verb: LabVerb,

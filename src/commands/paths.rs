@@ -1,4 +1,4 @@
-//! `eeruf paths`: every critical path of a ring, by which one sensor hears another.
+//! `eeruf lab paths`: every critical path of a ring, by which one sensor hears another.
 
 use std::path::PathBuf;
 

@@ -18,22 +18,22 @@ use crate::report::watch::Watch;
 /// Options of a program.
 #[derive(clap::Args)]
 pub(crate) struct ProgramArgs {
-    /// Write a folder with a program that fires the ring in the way recommended: a sketch, a crate, ..; by default none
+    /// Write a folder with a program that fires the ring in the recommended way: a sketch, a crate, ..; by default none
     #[arg(long, value_enum, value_name = "LANGUAGE",
           conflicts_with_all = ["emit", "json", "svg", "certificate", "period", "curve"])]
     pub(crate) program: Option<Language>,
     /// The board that the program is for; by default the usual one of its language
     #[arg(long, value_enum, value_name = "BOARD", requires = "program")]
     board: Option<Board>,
-    /// Let it send MAVLink from the board's own serial line to an autopilot instead of printing, with ArduPilot's
-    /// parameters beside it
+    /// Let the program send MAVLink over the board's serial line to an autopilot instead of printing, and write
+    /// ArduPilot's parameters too
     #[arg(long, hide_short_help = true, requires = "program")]
     mavlink: bool,
     /// The program's folder; by default one with the ring file's name
     #[arg(long, value_name = "DIR", requires = "program")]
     out: Option<PathBuf>,
-    /// The program's way of firing; by default the one that is recommended, and nothing is judged in rooms if it is
-    /// given
+    /// The program's way of firing, which is then not judged in rooms; by default the recommended
+    /// one
     #[arg(long, value_enum, value_name = "WAY", requires = "program")]
     way: Option<Named>,
 }
@@ -75,7 +75,7 @@ pub(crate) fn run(
     let robot = design.spec.room_robot().map_err(bad)?.robot;
     let wanted = Wanted { file: (&shown, &text), design, robot: &robot, way, mavlink: args.mavlink, name: &name };
     let program = program(&wanted, language, args.board).map_err(bad)?;
-    // What somebody may have changed by hand stays.
+    // Files that the user may have edited are kept.
     let there = program.files.iter().map(|(path, _)| folder.join(path)).find(|path| path.exists());
     if let Some(there) = there {
         return Err(InputError::new(&there, "it is there already; expected a new folder, by --out DIR"));

@@ -15,11 +15,11 @@ use crate::files::toml::read_world;
 use crate::report::table::markdown;
 use crate::report::watch::Watch;
 
-/// Hold the simulator against a log of a real ring in a room that was measured by tape.
+/// Compare the simulator with a log of a real ring in a room that was measured by tape.
 ///
-/// The log has a row for each firing, as c/arduino/examples/RealLog prints them; the scene has the walls as they were
-/// measured, and the ring. The same ring is simulated for as long as the log lasts, and fires in the same way. For each
-/// sensor: share of firings with an echo, median distance, and share of echoes more than 5 cm off it.
+/// The log has a row for each firing, as c/arduino/examples/RealLog prints them; the scene has the measured walls and
+/// the ring. The ring is simulated for the duration of the log, and fires in the same way. Prints for each sensor the
+/// share of firings with an echo, the median distance, and the share of echoes more than 5 cm off it.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// The log of firings
@@ -38,7 +38,7 @@ pub(crate) struct Args {
 
 /// Distance from the median beyond which an echo is another object's: a choice, as in docs/log/arduino.md.
 const OFF_MM: f64 = 50.0;
-/// Largest difference in the share of firings with an echo for a sensor to count as like its log.
+/// Largest difference in the share of firings with an echo for a sensor to agree with its log.
 const LIKE: f64 = 0.1;
 const MOST_PERIODS: f64 = 1e6;
 

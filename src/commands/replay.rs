@@ -22,11 +22,11 @@ use crate::report::replay_flow::{FlowReplay, rows};
 /// Run the filter over a log of real readings: which would it have accepted?
 ///
 /// With --ring the log is one of firings, as `eeruf diagnose` reads it, of a ring that fires by flow: each reading is
-/// judged again by what was fired, with the robot's motion from a column `g`, and compared with what the ring made of
-/// it, if the log says that. Without, it is whatever `eeruf logs` reads: MCAP, ROS 1 and ROS 2 bags, tables, lines of
-/// pairs, JSON. A damaged log is read as far as possible; the rest is named, and the exit code is 2. A gap in a
-/// sensor's times, and a clock that steps back, start its comparison over. The last line says how the sensors fire, and
-/// what agreement proves for that.
+/// judged again by the firings, with the robot's motion from a column `g`, and compared with the ring's own verdict,
+/// if the log has it. Without --ring, it is any log that `eeruf logs` reads: MCAP, ROS 1 and ROS 2 bags, tables, lines
+/// of pairs, JSON. A damaged log is read as far as possible; the rest is named, and the exit code is 2. A gap in a
+/// sensor's times, or a clock that steps back, starts its comparison over. The last line says how the sensors fire,
+/// and what agreement proves for that.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// The log
@@ -44,8 +44,8 @@ pub(crate) struct Args {
     #[command(flatten)]
     log: LogArgs,
     /// Write the log's ranges as MCAP, and beside each topic `TOPIC/accepted`: the accepted ranges, +Inf where nothing
-    /// is in range, -Inf for too close (REP 117), and no message for what was rejected; of firings, CSV with what is
-    /// made of each reading now, and the echo that is believed since
+    /// is in range, -Inf for too close (REP 117), and no message for a rejected one; for firings, CSV with the new
+    /// verdict on each reading, and the echo believed from then on
     #[arg(long, value_name = "FILE")]
     out: Option<PathBuf>,
     /// Draw what happened to each sensor over time, as SVG or, if the name ends in .png, as PNG

@@ -24,8 +24,8 @@ use crate::report::watch::Watch;
 /// Options for judging ways of firing in rooms.
 #[derive(clap::Args)]
 pub(crate) struct RoomArgs {
-    /// Judge ways of firing in these scenes and maps instead of the rooms of the set: files, or folders of them. The
-    /// ring stands where the scene's first robot does, and at --places of a map that are free
+    /// Judge ways of firing in these scenes and maps instead of the usual rooms: files, or folders of them. The
+    /// ring takes the place of a scene's first robot, or stands at free --places of a map
     #[arg(long, value_name = "SCENE.toml|MAP.yaml|DIR")]
     rooms: Vec<PathBuf>,
     /// Number of rooms of each kind, and of places in each map; 6 by default
@@ -36,7 +36,7 @@ pub(crate) struct RoomArgs {
     #[arg(long, hide_short_help = true, value_name = "N")]
     #[arg(value_parser = clap::value_parser!(u64).range(..=1_000_000_000))]
     first: Option<u64>,
-    /// The largest share of foreign sound in what is believed, in per cent, of a way that is recommended; 3 by
+    /// The largest share of foreign sound among the accepted readings of a recommended way, in per cent; 3 by
     /// default
     #[arg(long, hide_short_help = true, value_name = "PERCENT", value_parser = percent)]
     wrong: Option<f64>,
@@ -51,7 +51,7 @@ fn percent(text: &str) -> Result<f64, String> {
 }
 
 impl RoomArgs {
-    /// Returns the first of these options that was given, to refuse it for a file that is no ring.
+    /// Returns the first of these options that was given, to refuse it for a file that is not a ring.
     pub(crate) fn given(&self) -> Option<&'static str> {
         let given = [
             ("--rooms", !self.rooms.is_empty()),
@@ -64,8 +64,8 @@ impl RoomArgs {
     }
 }
 
-/// Measures a ring file's ways of firing, without its period: `eeruf study RING.toml`. With `all` or rooms of the
-/// user's own it prints every way in every kind of room, with `cost` the cost of each kind of way.
+/// Measures a ring file's ways of firing, without its period: `eeruf study RING.toml`. With `all`, or in the user's own
+/// rooms, it prints every way in every kind of room; with `cost`, it prints the cost of each kind of way.
 pub(crate) fn study(args: &RoomArgs, file: &Path, as_json: bool, all: bool, cost: bool) -> Result<Answer, InputError> {
     let spec = read_ring(file)?;
     let mut watch = Watch::new();
@@ -73,7 +73,7 @@ pub(crate) fn study(args: &RoomArgs, file: &Path, as_json: bool, all: bool, cost
     let name = file.display().to_string();
     if as_json || all || cost || !args.rooms.is_empty() {
         let mut judged = judged(args, &spec, design.as_ref(), &mut watch)?;
-        // In rooms of the user's own nothing appears.
+        // Nothing appears in the user's own rooms.
         if let Some(answer) = judged.as_mut().ok().filter(|_| cost && args.rooms.is_empty()) {
             let (asked, watch) = (asked(args, &spec)?, Mutex::new(&mut watch));
             answer.by_cost = spec.cost_in_rooms(design.as_ref(), &asked, &|share| goes_on(&watch, share)).ok();
@@ -89,7 +89,7 @@ pub(crate) fn study(args: &RoomArgs, file: &Path, as_json: bool, all: bool, cost
     .map_err(InputError::from)
 }
 
-/// The recommended way beside one by one, in rooms; or the reason why there is none.
+/// Compares the recommended way with firing one by one in rooms; or gives the reason why there is none.
 fn three_ways(
     args: &RoomArgs,
     spec: &RingSpec,
@@ -141,7 +141,7 @@ pub(crate) fn judged(
     Ok(spec.judge_in_rooms(design, &asked, &|share| goes_on(&watch, share)))
 }
 
-/// The figures of the recommended way where the ring is used; none in rooms of the user's own, where nothing appears.
+/// The figures of the recommended way where the ring is used; none in the user's own rooms, where nothing appears.
 pub(crate) fn conditions(
     args: &RoomArgs,
     spec: &RingSpec,
@@ -170,7 +170,7 @@ pub(crate) fn recommended(
 fn asked(args: &RoomArgs, spec: &RingSpec) -> Result<RoomsAsked, InputError> {
     let default = RoomsAsked::default();
     let (places, first) = (args.places.unwrap_or(default.places), args.first.unwrap_or(default.first));
-    // A ring without places is refused where it is judged.
+    // A ring without places is refused later, when it is judged.
     let radius_m = spec.room_robot().map_or(0.0, |robot| robot.robot.radius_m());
     Ok(RoomsAsked {
         own: own_rooms(&args.rooms, first..first.saturating_add(places), radius_m)?,

@@ -1,4 +1,4 @@
-//! `eeruf scene`: makes a scene file from a map.
+//! `eeruf lab scene`: makes a scene file from a map.
 
 use std::path::PathBuf;
 
@@ -20,7 +20,7 @@ pub(crate) struct Args {
     #[arg(value_name = "MAP.yaml")]
     file: PathBuf,
     /// Largest distance of walls from the edges of the occupied cells, in metres; by default one and a half cells,
-    /// which makes the stair straight that a slanted wall becomes in cells
+    /// which straightens the stairs that a slanted wall becomes in cells
     #[arg(long, value_name = "M", value_parser = tolerance)]
     tolerance_m: Option<f64>,
 }

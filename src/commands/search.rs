@@ -1,4 +1,4 @@
-//! `eeruf search`: the paper's problem of waits on a grid.
+//! `eeruf lab search`: the paper's problem of waits on a grid.
 
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
@@ -21,7 +21,7 @@ use crate::report::watch::Watch;
 
 /// Find tables of waits on a grid, with given lags, as the paper does.
 ///
-/// The file gives sensors, period_us, wait_max_us, tick_us, t_delta_us, and if need be t_lag_us, min_interval_us,
+/// The file gives sensors, period_us, wait_max_us, tick_us, t_delta_us, and optionally t_lag_us, min_interval_us,
 /// neighbours, layout and criterion. Without an option it prints one table. Exit code 0 if there is a table, 1 if it is
 /// proven that there is none, 2 for bad input, 3 if the budget or the time limit ended the search before either.
 #[derive(clap::Args)]
@@ -33,8 +33,8 @@ pub(crate) struct Args {
     #[arg(long, conflicts_with = "best")]
     count: bool,
     /// Find the table with the largest smallest interval, with the largest T_delta, with the shortest waits, or with
-    /// the shortest period for these lags; pareto: all tables of which no other has more of the first two without less
-    /// of the other; by default any table
+    /// the shortest period for these lags; pareto: all tables that no other beats in one of the first two without
+    /// losing in the other; by default any table
     #[arg(long, value_enum, value_name = "WHAT")]
     best: Option<Best>,
     /// Largest number of nodes to search; by default no limit
@@ -89,7 +89,7 @@ fn answer(found: bool, proven: bool) -> Answer {
     }
 }
 
-/// Searches up to this many nodes, unless the user ends it.
+/// Searches up to this many nodes, unless the user ends the search.
 fn within<T>(nodes: u64, watch: &mut Watch, search: impl FnOnce(&mut Budget<'_>) -> T) -> T {
     let mut watcher = |progress: &Progress| watch.control_flow(|| format!("{} nodes", progress.nodes));
     search(&mut Budget::nodes_at_most(nodes).watched(WATCHED_EVERY, &mut watcher))

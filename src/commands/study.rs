@@ -26,9 +26,9 @@ use crate::report::watch::Watch;
 
 /// Compare firing as sketches do, one by one and the recommended way in a scene, or for a ring in rooms.
 ///
-/// Prints a row for each, and what to do: how soon the ring sees what steps before it (t95), how often foreign sound
-/// stops the robot, how many sensors are blind, and how many right echoes it has a second. In a scene 60 things appear
-/// (20 where something moves), one at a time, before the first robot's sensors.
+/// Prints a row for each, and what to do: how soon the ring sees an object that appears (t95), how often foreign sound
+/// stops the robot, how many sensors are blind, and how many right echoes there are per second. In a scene, 60 objects
+/// appear (20 if anything moves), one at a time, in front of the first robot's sensors.
 #[derive(clap::Args)]
 #[command(after_long_help = every_method())]
 pub(crate) struct Args {
@@ -38,11 +38,11 @@ pub(crate) struct Args {
     /// Print every method's tables too, and who fooled whom
     #[arg(long)]
     all: bool,
-    /// Print the cost of each kind of way of firing a ring file's ring, too, by how soon the ring sees what appears:
-    /// standing, driving, turning, and beside others if the file says so; takes minutes
+    /// Print the cost of each kind of way of firing a ring file's ring, too, by how soon it sees an object that
+    /// appears: standing, driving, turning, and near others if the file says so; takes minutes
     #[arg(long, hide_short_help = true)]
     cost: bool,
-    /// Number of the first robot's periods in tables, which it prints as --all does, and pictures; by default 2000, or
+    /// Number of the first robot's periods in tables, which are then printed, and pictures; by default 2000, or
     /// 250 if anything moves
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     periods: Option<u32>,
@@ -66,10 +66,10 @@ pub(crate) struct Args {
     /// JSON and pictures all that fit the scene
     #[arg(long = "method", value_name = "NAME,..", value_delimiter = ',')]
     methods: Vec<Method>,
-    /// Seed of all that is random, a whole number; by default the scene's
+    /// Seed of the random numbers, a whole number; by default the scene's
     #[arg(long, hide_short_help = true, value_name = "SEED")]
     seed: Option<u64>,
-    /// Effects that are simulated: plain or default (see docs/explanation/physics.md); by default the scene's
+    /// Simulated effects: plain or default (see docs/explanation/physics.md); by default the scene's
     #[arg(long, hide_short_help = true, value_name = "PRESET")]
     physics: Option<Physics>,
     #[command(flatten)]
@@ -170,7 +170,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     Ok(Answer::Yes)
 }
 
-/// Option for the rest of the answer, after the pictures on their line.
+/// The hint at the option that prints the rest of the answer.
 const MORE: &str = "`--all`: every method, and who fooled whom.\n";
 
 /// Number of trials of each way for choosing votes, and again for the report; the second number is for moving scenes.
@@ -182,7 +182,7 @@ fn three_ways(args: &Args, world: &World, watch: &mut Watch) -> Result<String, I
     let methods = [Method::Blocking, Method::Sequential, Method::InTurn].map(|method| (Family::OneByOne, method));
     let methods = [&methods[..], &[(Family::Flow, Method::Flow)]].concat();
     let watch = Mutex::new(watch);
-    // Other things for each seed.
+    // Different objects for each seed.
     let trials = if world.moves() { TRIALS_IF_MOVING } else { TRIALS };
     let first = (args.seed.unwrap_or(world.seed()) % (1 << 32)) * 2 * trials;
     let measured = |first: u64, part: f64| {
@@ -236,7 +236,7 @@ fn study(args: &Args, world: &World, mut watch: Watch) -> Result<Study, InputErr
         match result {
             Ok(readings) => runs.push(readings),
             Err(SimulationError::Stopped) => left_out.push((method, "stopped by Ctrl-C".to_owned())),
-            // Asked for by name, or nothing to do with the method: then it is the answer to the question.
+            // The error of a method that was named, or one that concerns all methods, ends the command.
             Err(error) if !args.methods.is_empty() || matches!(error, SimulationError::Paths { .. }) => {
                 return Err(bad(&error));
             }

@@ -23,16 +23,16 @@ use crate::report::watch::{Watch, was_stopped};
 
 /// Find from a measuring run which sensors hear each other, and write a ring file for `design`.
 ///
-/// In the run each sensor fires alone, then each ordered pair with several times between the two, after silence:
-/// eeruf_core::survey::Survey does so, and the Arduino example Survey. What moves in a sensor with the time between is
-/// the other's sound; its own echo does not move. The log is CSV with the columns sensor, fired_us, period (the slot),
+/// In the run each sensor fires alone, then each ordered pair with several delays between the two, after silence, as
+/// eeruf_core::survey::Survey and the Arduino example Survey do. Sound whose time moves with the delay is the other
+/// sensor's; a sensor's own echo does not move. The log is CSV with the columns sensor, fired_us, period (the slot),
 /// phase and t_echo_us, or MCAP; a column `sends` that is 0 says that a sensor only listened.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// The log
     #[arg(value_name = "LOG", required_unless_present = "simulate")]
     file: Option<PathBuf>,
-    /// Survey the first robot of a scene, and compare what is found with the paths that there are; of several scenes,
+    /// Survey the first robot of a scene, and compare the result with the true paths; for several scenes, print
     /// a line for each
     #[arg(long, value_name = "SCENE.toml", conflicts_with = "file", num_args = 1..)]
     simulate: Vec<PathBuf>,
@@ -42,11 +42,11 @@ pub(crate) struct Args {
     /// Simulated: plain or default effects (see docs/explanation/physics.md); by default the scene's
     #[arg(long, value_name = "PRESET", requires = "simulate")]
     physics: Option<Physics>,
-    /// Simulated: number of times between the two of a pair, from 0 on
+    /// Simulated: number of delays within a pair, from 0 on
     #[arg(long, value_name = "N", default_value_t = 20, requires = "simulate")]
     #[arg(value_parser = clap::value_parser!(u8).range(2..))]
     leads: u8,
-    /// Simulated: from each of these times to the next, in microseconds
+    /// Simulated: the step from one delay to the next, in microseconds
     #[arg(long, value_name = "US", default_value_t = 750, requires = "simulate")]
     #[arg(value_parser = clap::value_parser!(u32).range(10..=100_000))]
     lead_step_us: u32,
@@ -57,7 +57,7 @@ pub(crate) struct Args {
     /// its own
     #[arg(long, value_name = "RING.toml")]
     ring: Option<PathBuf>,
-    /// Sensors that hear each other within this time, in microseconds, are neighbours; what comes later is left to
+    /// Sensors that hear each other within this time, in microseconds, are neighbours; later sound is left to
     /// alternating waits
     #[arg(long, value_name = "US", default_value_t = 15_000)]
     #[arg(value_parser = clap::value_parser!(u32).range(1000..=120_000))]
@@ -125,7 +125,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
             window_us: args.window_us.unwrap_or(surveyed.window_us.next_multiple_of(1000)),
             tolerance_us: args.tolerance_us,
         };
-        // `verify --ring` reads such a file: one that is no survey's is likely meant so, and stays.
+        // A ring file that no survey wrote was probably meant to be read, as by `verify --ring`, and is kept.
         let is_foreign = fs::read_to_string(ring).is_ok_and(|text| !text.is_empty() && !text.starts_with(FROM));
         if is_foreign {
             let message = "a file that no survey wrote; expected a new name: `--ring` writes a ring file";
@@ -143,7 +143,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     }
 }
 
-/// Surveys a log, and shows meanwhile that it is at work.
+/// Surveys a log, and shows progress meanwhile.
 fn watched(log: &FiringLog, settings: &PathSettings, watch: Watch) -> Surveyed {
     survey_while(log, settings, &watch.asked(|| format!("{} firings", log.firings.len())))
 }

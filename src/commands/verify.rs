@@ -46,8 +46,8 @@ pub(crate) struct Args {
     /// Also reject a sensor's own echo from the period before
     #[arg(long)]
     stale_echo: bool,
-    /// Hold it against what this ring file asks for, instead of the options above; the only way to ask for what differs
-    /// from sensor to sensor
+    /// Check it against the needs of this ring file, instead of the options above; the only way to check needs that
+    /// differ from sensor to sensor
     #[arg(long, value_name = "RING.toml", conflicts_with_all = [
         "t_delta_us", "min_interval_us", "neighbours", "layout", "window_us", "stale_echo"
     ])]

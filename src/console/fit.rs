@@ -1,9 +1,9 @@
-//! Text that fits the terminal: tables with wrapped cells, on a narrow terminal a list of each row's figures; sentences
-//! by wrapping.
+//! Text that fits the terminal: tables get wrapped cells, or become lists of each row's figures on a narrow terminal;
+//! sentences are wrapped.
 
 use comfy_table::{CellAlignment, ContentArrangement, Table, presets};
 
-/// The least width of a column with its frame; a table with less for a column becomes lists.
+/// The least width of a column with its frame; a table with narrower columns becomes lists.
 const LEAST_COLUMN: usize = 8;
 
 /// Returns the text with no line longer than `width`.
@@ -48,7 +48,7 @@ fn fit_table(out: &mut String, block: &[&str], width: usize) {
     table.set_content_arrangement(ContentArrangement::Dynamic).set_width(width.try_into().unwrap_or(u16::MAX));
     table.set_header(header.iter().map(|cell| cell.trim()));
     for (index, column) in table.column_iter_mut().enumerate() {
-        // Padded cells stand at the right.
+        // Padded cells are right-aligned.
         if rows.iter().any(|row| row.get(index).is_some_and(|cell| cell.starts_with("  "))) {
             column.set_cell_alignment(CellAlignment::Right);
         }
@@ -124,7 +124,7 @@ mod tests {
         for width in 20..80 {
             let narrow = fit(TABLE, width);
             assert!(longest(&narrow) <= width, "{width}\n{narrow}");
-            // Words may be parted in narrow columns.
+            // Words may be split in narrow columns.
             let letters = |text: &str| text.chars().filter(|c| c.is_alphanumeric()).count();
             assert!(letters(&narrow) >= letters(TABLE), "{width}\n{narrow}");
         }

@@ -1,5 +1,5 @@
-//! The terminal: the only writer of standard output, warnings and errors on standard error, and how wide and colourful
-//! lines are.
+//! The terminal: the only writer of standard output, warnings and errors on standard error, and the width and colour
+//! of lines.
 //!
 //! Depends on no other part of the program.
 

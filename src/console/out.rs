@@ -48,7 +48,7 @@ pub(crate) fn print_line(text: impl fmt::Display) -> Result<(), OutputError> {
     print(format_args!("{text}\n"))
 }
 
-/// Writes a text for people to standard output, as wide as the terminal, and flushes.
+/// Writes a text for people to standard output, fitted to the terminal's width, and flushes.
 ///
 /// # Errors
 /// The output is closed, or cannot take the text.

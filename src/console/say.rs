@@ -37,6 +37,6 @@ fn say(prefix: &str, colour: &str, message: &dyn fmt::Display) {
     if settings().is_err_coloured() && !prefix.is_empty() && text.starts_with(prefix) {
         text = format!("{colour}{prefix}{PLAIN}{}", &text[prefix.len()..]);
     }
-    // Standard error is the last place to say anything: where it is closed, there is none.
+    // If standard error is closed, there is nowhere left to report it.
     _ = io::stderr().lock().write_all(text.as_bytes());
 }

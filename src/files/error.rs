@@ -12,7 +12,7 @@ const BAD_INPUT: u8 = 2;
 /// The exit code of a failure to write, `EX_IOERR` of sysexits.h.
 const CANNOT_WRITE: u8 = 74;
 
-/// A failure of a command: the error that all of eeruf uses, and the exit code.
+/// A failure of a command: the error type used in all of eeruf, and the exit code.
 #[derive(Debug)]
 pub(crate) struct InputError {
     report: FileError,

@@ -41,7 +41,7 @@ pub fn firing_log(readings: &Readings) -> FiringLog {
 /// the first one, in microseconds for each millisecond.
 fn g_us_ms(readings: &Readings, k: usize) -> f32 {
     const WITHIN_S: f64 = 0.02;
-    /// Arm at which a wall moves when the robot turns, in metres, and the speed of sound in m/s, as rings take them.
+    /// Arm at which a wall moves when the robot turns, in metres, and the speed of sound in m/s, as rings assume them.
     const LEVER_M: f64 = 0.5;
     const SOUND_M_S: f64 = 343.0;
     let Readings { fired_s, x_m, y_m, heading_rad, .. } = readings;

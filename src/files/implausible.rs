@@ -1,4 +1,4 @@
-//! Warnings about input that is legal and implausible.
+//! Warnings about input that is legal but implausible.
 
 use std::path::Path;
 
@@ -13,7 +13,7 @@ use crate::console;
 /// Warns about every implausible value of a TOML file.
 ///
 /// # Errors
-/// The first of them, if warnings are denied.
+/// The first warning, if warnings are denied.
 pub(crate) fn warn_of(file: &Path, text: &str) -> Result<(), InputError> {
     doubts_in(text).into_iter().try_for_each(|found| warn(found.in_file(file).into()))
 }
@@ -40,7 +40,7 @@ pub(crate) fn warn(warning: InputError) -> Result<(), InputError> {
 /// Warns about implausible values of options, which mean the same as keys of these names in files.
 ///
 /// # Errors
-/// The first of them, if warnings are denied.
+/// The first warning, if warnings are denied.
 pub(crate) fn warn_of_options(matches: &ArgMatches) -> Result<(), InputError> {
     for key in doubted_keys() {
         let is_given = matches.try_contains_id(key).is_ok_and(|is_given| is_given)

@@ -1,4 +1,4 @@
-//! Simulated readings as an MCAP file, for Foxglove, Rerun and whatever reads ROS 2: ranges, poses, the scene, and each
+//! Simulated readings as an MCAP file, for Foxglove, Rerun and readers of ROS 2: ranges, poses, the scene, and each
 //! reading's path.
 //!
 //! All messages are those of ROS 2, in CDR. Sensors and robots are counted from 1 in the names of topics and frames.
@@ -25,10 +25,10 @@ const SHOWN_NS: u64 = 120_000_000;
 /// Time for which replaced scenes are kept, longer than sound travels.
 const KEPT_S: f64 = 10.0;
 
-/// A world and where its robots are.
+/// A world with the places of its robots.
 pub(crate) struct Stage<'a> {
     world: &'a World,
-    /// Worlds with the scenes that its own was exchanged for, and since when in seconds, in order of time.
+    /// Worlds with the later scenes, each with the time in seconds from which it holds, in order of time.
     changes: &'a [(Arc<World>, f64)],
     /// The place and velocity of a robot at a time in seconds, if they are known.
     moment: Box<dyn Fn(usize, f64) -> Option<Moment> + 'a>,
@@ -48,7 +48,7 @@ impl<'a> Stage<'a> {
 
     /// Makes a stage whose robots are steered, among scenes that change.
     fn under_way(simulation: &'a Simulation, changes: &'a [(Arc<World>, f64)]) -> Self {
-        // What is computed of times may be off by a rounding.
+        // Computed times may be off by a rounding error.
         let known = |time_s: f64| time_s.clamp(0.0, simulation.time_s());
         let moment = move |robot, time_s| simulation.moment_at(robot, known(time_s)).ok();
         Self { world: simulation.world(), changes, moment: Box::new(moment) }
@@ -86,7 +86,7 @@ fn on_track(track: &[TrackPoint], time_s: f64) -> Option<Moment> {
     };
     let lasts_s = after.time_s - before.time_s;
     let way = Vector::new(after.x_m - before.x_m, after.y_m - before.y_m);
-    // The shorter way round.
+    // The robot turns the shorter way round.
     let turn = after.heading_rad - before.heading_rad;
     let turn = turn.sin().atan2(turn.cos());
     let share = ((time_s - before.time_s) / lasts_s).clamp(0.0, 1.0);
@@ -112,9 +112,9 @@ pub(crate) fn write_mcap(file: &Path, stage: &Stage<'_>, runs: &[Readings]) -> R
     Ok(out.finish()?)
 }
 
-/// A [`Simulation`] as an MCAP file, written while it goes on, as `eeruf study --mcap` writes a whole one: ranges, what
-/// is accepted, poses, the scene and what it changes to, each reading's path and each firing; `docs/how-to/logs.md` has
-/// the topics.
+/// An MCAP file of a [`Simulation`], written while it runs, with the contents of `eeruf study --mcap`: ranges, accepted
+/// readings, poses, the scene and its changes, each reading's path and each firing; `docs/how-to/logs.md` lists the
+/// topics.
 ///
 /// ```
 /// use eeruf_sim::*;
@@ -146,7 +146,7 @@ impl Recording {
     /// Creates the file, and writes the scene.
     ///
     /// # Errors
-    /// If it cannot be written.
+    /// The file cannot be written.
     pub fn create(file: &Path, simulation: &Simulation) -> Result<Self, FileError> {
         let mut out = McapWriter::create(file)?;
         let (world, since_s) = simulation.world_now();
@@ -155,10 +155,10 @@ impl Recording {
         Ok(Self { out, next, scenes: vec![(Arc::clone(world), since_s)] })
     }
 
-    /// Adds what was read in a step, where robots were since the step before, and the scene if it has changed.
+    /// Adds the readings of a step, the robots' poses since the previous step, and the scene if it has changed.
     ///
     /// # Errors
-    /// If the file cannot be written.
+    /// The file cannot be written.
     pub fn add(&mut self, simulation: &Simulation, read: &Readings) -> Result<(), FileError> {
         let (world, since_s) = simulation.world_now();
         if !self.scenes.last().is_some_and(|(known, _)| Arc::ptr_eq(known, world)) {
@@ -178,10 +178,10 @@ impl Recording {
         Ok(())
     }
 
-    /// Writes the rest and the index. A recording that is dropped does so too, but cannot say if it fails.
+    /// Writes the rest and the index. A dropped recording does so too, but cannot report a failure.
     ///
     /// # Errors
-    /// If the file cannot be written.
+    /// The file cannot be written.
     pub fn finish(self) -> Result<(), FileError> {
         self.out.finish()
     }
@@ -275,7 +275,7 @@ fn readings(out: &mut McapWriter, stage: &Stage<'_>, run: &Readings) -> Result<(
         }
         if let Some(points) = run.path_of(k).and_then(|path| corners(stage, path, run.emitted_s[k])) {
             let is_own = run.path_of(k).is_some_and(|path| path.emitter == path.receiver);
-            // Its own echo in green, another's sound in red where it is believed, else in yellow.
+            // The sensor's own echo is green; another's sound is red if it is believed, else yellow.
             let colour = match (is_own, run.is_accepted(k)) {
                 (true, _) => [0.30, 0.62, 0.44, 0.6],
                 (false, true) => [0.82, 0.29, 0.36, 1.0],

@@ -34,7 +34,7 @@ pub(crate) fn simulate(world: &World, plan: SurveyPlan, keep_going: KeepGoing<'_
                     outside.fire(sensor.into(), now_us * 1000)?;
                     fired_us[usize::from(sensor)] = now_us;
                 }
-                // What it heard cannot change any more: its window is over.
+                // The edges heard cannot change any more: the window is over.
                 SurveyEvent::Row { sensor, slot, .. } => {
                     let fired = fired_us[usize::from(sensor)];
                     let heard = outside.hears_at_ns(sensor.into()).map(|at| Micros::new((at / 1000 - fired) as u32));

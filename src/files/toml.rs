@@ -11,7 +11,7 @@ use serde::de::DeserializeOwned;
 use super::error::InputError;
 use super::implausible::{warn, warn_of};
 
-/// Reads a TOML file of this kind, builds its meaning, and warns about implausible values in it.
+/// Reads a TOML file of this kind, builds a value from it, and warns about implausible values in it.
 pub(crate) fn read_toml<T: DeserializeOwned, B>(
     file: &Path,
     kind: Kind,
@@ -67,7 +67,7 @@ fn unlikely(world: &World) -> Option<String> {
             ));
         }
     }
-    // Nothing that sound comes back from is near, and coordinates are beyond those of rooms.
+    // Nothing near reflects sound, and coordinates are beyond those of rooms.
     let walls = world.scene().walls().iter().flat_map(|wall| [wall.from, wall.to]);
     let farthest = walls.flat_map(|at| [at.x.abs(), at.y.abs()]).fold(0.0, f64::max);
     let is_far = doubt("points_m", farthest).is_some() && is_silent(world);

@@ -24,7 +24,7 @@ pub(crate) fn check_outputs(matches: &ArgMatches) -> Result<(), InputError> {
         if file.canonicalize().is_ok_and(|file| read.contains(&file)) {
             return wrong("expected another file than the one that is read");
         }
-        // These make their folders.
+        // These commands make their folders.
         if verb == "dataset" || (verb == "design" && id == "out") {
             continue;
         }

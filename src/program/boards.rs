@@ -30,7 +30,7 @@ const MEGA_ECHOES: [u8; 24] =
 const PICO: [u8; 26] = [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20, 21, 22, 26, 27, 28];
 /// Pins that have no special level at boot and do not belong to the flash or the serial line.
 const ESP32_TRIGGERS: [u8; 9] = [4, 13, 16, 17, 18, 19, 21, 22, 23];
-/// Echo pins of an ESP32, of which some can only be inputs.
+/// Echo pins of an ESP32, some of which can only be inputs.
 const ESP32_ECHOES: [u8; 9] = [25, 26, 27, 32, 33, 34, 35, 36, 39];
 /// GPIO numbers; the serial line, I2C and the first SPI are left free.
 const PI: [u8; 20] = [4, 5, 6, 12, 13, 16, 17, 18, 19, 20, 21, 22, 23, 24, 25, 26, 27, 7, 8, 9];
@@ -74,7 +74,7 @@ impl Board {
     /// Returns the pins of this many modules, without those of the line to an autopilot.
     ///
     /// # Errors
-    /// The number of modules that it has pins for, in words.
+    /// The number of modules that the board has pins for, in words.
     pub(crate) fn wiring(self, modules: usize, mavlink: bool) -> Result<Wiring, String> {
         let pico = &PICO[if mavlink { 2 } else { 0 }..];
         let halves = |pins: &[u8]| {

@@ -78,7 +78,7 @@ const ARDUINO_LIBRARY: [(&str, &str); 5] = [
 /// Writes a program.
 ///
 /// # Errors
-/// What the language, the board or the modules cannot do, in words.
+/// A wish that the language, the board or the modules cannot fulfil, in words.
 pub(crate) fn program(wanted: &Wanted<'_>, language: Language, board: Option<Board>) -> Result<Program, String> {
     let spec = &wanted.design.spec;
     let times = pulse_times(spec)?;
@@ -102,7 +102,7 @@ pub(crate) fn program(wanted: &Wanted<'_>, language: Language, board: Option<Boa
         (Language::Ros2, Some(_), Some((_, wiring))) => ros2(wanted, &about, &wiring),
         (Language::C, flow, _) => Ok(c(wanted, flow.as_ref(), &about)),
         (Language::Rust, flow, _) => Ok(rust(wanted, flow.as_ref(), times, &about)),
-        // Each language above has its boards, and a way its settings.
+        // The arms above cover each language with its boards, and each way with its settings.
         _ => Err("no program for this way and board".to_owned()),
     }
 }
@@ -233,7 +233,7 @@ fn lines_of(template: &str, flows: bool, mavlink: bool) -> String {
 
 /// Returns the directions and ranges of sensors for an autopilot, by their names in templates.
 fn directions(wanted: &Wanted<'_>) -> [(&'static str, String); 4] {
-    // Of a beam of 30 degrees, as the ROS 2 node takes it.
+    // Half of a beam of 30 degrees, as the ROS 2 node assumes.
     const HALF_VIEW_DEG: u32 = 15;
     const MIN_CM: u32 = 2;
     let yaws: Vec<f32> = wanted.robot.sensors.iter().map(|pose| -pose.rotation.angle().to_degrees() as f32).collect();
@@ -373,7 +373,7 @@ fn rust(wanted: &Wanted<'_>, flow: Option<&FlowDesign>, times: PulseTimes, about
     let (design, spec) = (wanted.design, &wanted.design.spec);
     let source = wanted.source(Form::Rust, flow);
     let own = flow.map_or(source.contains("EachSensor"), |flow| flow.limits.most().is_some());
-    // A module may rest for less than it says, where the table of its ring file keeps that.
+    // A module may rest for less time than its file says, if the table of the ring file requires it.
     let rest = spec.modules.first().map_or(0, |module| module.rest_us).min(design.schedule.min_refire().as_micros());
     let rest = flow.map_or(Micros::new(rest), |flow| flow.turns.rest);
     let (ring, begin) = match (flow, own) {
@@ -407,7 +407,7 @@ fn ros2(wanted: &Wanted<'_>, about: &[String], wiring: &Wiring) -> Result<Progra
         return Err(format!("--way {}: expected flow, by which the node fires", wanted.way.name()));
     }
     let values = [("triggers", &*list(&wiring.triggers)), ("echoes", &*list(&wiring.echoes))];
-    // The node publishes where sensors are: without places, those for which `design` chose the way.
+    // The node publishes the sensors' places: without any in the file, those for which `design` chose the way.
     let spec = &wanted.design.spec;
     let is_assumed = spec.places.poses.is_empty() && matches!(spec.layout.layout(), Layout::Ring(_));
     let spacing_deg = 360.0 / spec.sensors as f64;

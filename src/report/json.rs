@@ -4,7 +4,7 @@ use serde::{Serialize, Serializer};
 
 /// Writes the output of `--json`: one object on one line.
 pub(crate) fn to_json(answer: &impl Serialize) -> String {
-    // Our own types: named fields, numbers and strings, which always serialise.
+    // Our own types have named fields, numbers and strings, which always serialise.
     serde_json::to_string(answer).unwrap_or_default()
 }
 

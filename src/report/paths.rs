@@ -5,7 +5,7 @@ use serde::Serialize;
 
 use super::table::markdown;
 
-/// Arrays of equal length, by emitter, receiver and length, named as in Python; sensors and walls from 0.
+/// Arrays of equal length, sorted by emitter, receiver and length, named as in Python; sensors and walls from 0.
 #[derive(Default, Serialize)]
 pub(crate) struct PathsJson {
     pub(crate) emitter: Vec<u32>,
@@ -14,7 +14,7 @@ pub(crate) struct PathsJson {
     pub(crate) order: Vec<u32>,
     pub(crate) departure_rad: Vec<f64>,
     pub(crate) arrival_rad: Vec<f64>,
-    /// Relative to 1 m on axis, both sensors' patterns included.
+    /// Amplitude relative to 1 m on axis, including both sensors' patterns.
     pub(crate) amplitude: Vec<f64>,
     /// Level above the threshold of hearing.
     pub(crate) level_db: Vec<f64>,

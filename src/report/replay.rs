@@ -47,7 +47,7 @@ pub(crate) struct Counts {
     name: Option<String>,
     accepted: u64,
     rejected: u64,
-    /// Readings that agreed with the one before, but not yet with enough: only if more than two are compared.
+    /// Readings that agreed with the previous one, but not yet with enough others; only if more than two are compared.
     #[serde(skip_serializing_if = "is_zero")]
     repeated: u64,
     first: u64,
@@ -59,7 +59,7 @@ pub(crate) struct Counts {
     /// Readings that are not numbers.
     #[serde(skip_serializing_if = "is_zero")]
     invalid: u64,
-    /// Readings whose time is before that of the reading before.
+    /// Readings whose time is before that of the previous reading.
     #[serde(skip_serializing_if = "is_zero")]
     backwards: u64,
     /// Pauses; nothing is compared across them.

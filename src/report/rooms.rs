@@ -8,7 +8,7 @@ use serde::Serialize;
 
 use super::table::{markdown, or_dash};
 
-/// The recommended way, or why there is none.
+/// The recommended way, or the reason why there is none.
 pub(crate) fn describe(name: &str, judged: &Result<RoomsAnswer, String>) -> String {
     match judged {
         Ok(answer) => Described { answer, judgement: &answer.judgement }.verdict(name),
@@ -78,7 +78,7 @@ impl Described<'_> {
         text
     }
 
-    /// Writes the sentence that answers.
+    /// Writes the answer in one sentence.
     fn verdict(&self, name: &str) -> String {
         let judgement = self.judgement;
         let (Some(way), Some(base)) = (judgement.best(), judgement.ways.first()) else {
@@ -212,7 +212,7 @@ impl Described<'_> {
     }
 }
 
-/// Ways of firing in the JSON of `eeruf design`, or why none was judged.
+/// Ways of firing in the JSON of `eeruf design`, or the reason why none was judged.
 #[derive(Serialize)]
 #[serde(untagged)]
 pub(crate) enum RoomsOrNot<'a> {

@@ -51,7 +51,7 @@ impl FrontJson {
     }
 }
 
-/// One table, or that there is none. `what` names the table or the value that was to be largest.
+/// Describes a table, or says that there is none. `what` names the table, or the value that was maximised.
 pub(crate) fn describe(what: &str, found: &Found<MAX_SENSORS>, seconds: f64) -> String {
     let cost = cost(found.nodes, seconds);
     let Some(schedule) = &found.schedule else {

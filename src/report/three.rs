@@ -1,5 +1,5 @@
-//! The answer of `study`: firing as sketches do, the best one by one and the recommended way, a row each, and what to
-//! do.
+//! The answer of `study`: a row each for firing like sketches, the best way one by one and the recommended way, and
+//! what to do.
 
 use std::fmt::Write as _;
 

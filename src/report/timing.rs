@@ -22,7 +22,7 @@ pub(crate) fn diagram(schedule: &AnySchedule, requirements: &Requirements<'_>) -
             .filter_map(|(phase, start)| Some(start + f64::from(schedule.t_fire(phase, x)?.as_micros())));
         let fires: Vec<f64> = fires.collect();
         for &fire in &fires {
-            // What the second period leaves over is heard in the first.
+            // A window that lasts beyond the second period goes on in the first.
             for start in [fire, fire - 2.0 * period] {
                 let end = column(start + f64::from(requirements.window_of(x).as_micros())).max(column(start.max(0.0)));
                 line[column(start.max(0.0))..end].fill('-');

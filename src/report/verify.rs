@@ -11,7 +11,7 @@ use serde::Serialize;
 
 use super::table::plain;
 
-/// The report with the names that Python uses; sensors from 0, phases as `P` says them.
+/// The report with the names that Python uses; sensors from 0, phases in the form `P`.
 #[derive(Serialize)]
 pub(crate) struct ReportJson<P> {
     ok: bool,

@@ -108,13 +108,13 @@ impl Watch {
         true
     }
 
-    /// Returns a function that tells if a task should continue, for a task that reports no progress.
+    /// Returns a function that tells whether a task should continue, for a task that reports no progress.
     pub(crate) fn asked(self, how_far: impl Fn() -> String) -> impl Fn() -> bool {
         let watch = std::cell::RefCell::new(self);
         move || watch.borrow_mut().go_on(&how_far)
     }
 
-    /// Answers like [`go_on`](Self::go_on), in the form that a search asks for.
+    /// Answers like [`go_on`](Self::go_on), in the form that a search needs.
     pub(crate) fn control_flow(&mut self, how_far: impl FnOnce() -> String) -> ControlFlow<()> {
         if self.go_on(how_far) { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     }

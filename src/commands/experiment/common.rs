@@ -1,4 +1,4 @@
-//! Arguments and progress of both sets.
+//! Arguments and progress of all sets.
 
 use std::fmt;
 use std::path::PathBuf;
@@ -28,7 +28,7 @@ pub(crate) struct Common {
     /// The number of the first geometry or course; parameters were tuned on numbers below 2000
     #[arg(long, value_name = "SEED", default_value_t = FIRST)]
     pub(crate) first: u64,
-    /// Effects that are simulated: default or plain (see docs/explanation/physics.md)
+    /// Simulated effects: default or plain (see docs/explanation/physics.md)
     #[arg(long, value_name = "PRESET", default_value = "default")]
     pub(crate) physics: Physics,
     /// Floor and ceiling: flat for none, or room, 2.6 m high with sensors at 0.3 m
@@ -37,7 +37,7 @@ pub(crate) struct Common {
     /// Growth of the receivers' gain: constant, square_root, linear, stepped or polaroid_6500
     #[arg(long, value_name = "GAIN", default_value = "constant", value_parser = gain)]
     pub(crate) gain: GainProfile,
-    /// Run the I-th of N parts, and print what `eeruf merge` makes the whole of; by default all
+    /// Run part I of N, and print it for `eeruf lab merge`; by default all
     #[arg(long, value_name = "I/N", conflicts_with_all = ["json", "svg", "png"])]
     pub(crate) shard: Option<Shard>,
     /// Print one JSON object
@@ -64,7 +64,7 @@ fn gain(name: &str) -> Result<GainProfile, String> {
 }
 
 impl Common {
-    /// Returns all arguments that decide what is run; `seeds` is used unless another number is given.
+    /// Returns all arguments that decide what is run; `seeds` is the default number of seeds.
     pub(super) fn words(&self, seeds: u64) -> Vec<String> {
         let Self { first, physics, height, gain, .. } = self;
         let height = match height {
@@ -82,12 +82,12 @@ impl Common {
         matches!(self.height, Height::Room).then_some(Room::DEFAULT)
     }
 
-    /// Returns true if one file is to have a picture.
+    /// Returns true if a picture goes into a single file instead of a folder.
     pub(crate) fn draws_one(&self) -> bool {
         self.svg.iter().chain(&self.png).any(|name| is_picture(name))
     }
 
-    /// Draws a picture in each form that was asked for.
+    /// Draws a picture in each requested form.
     pub(crate) fn draw(&self, name: &str, picture: impl Fn() -> Picture) -> Result<(), InputError> {
         for (folder, ending) in [(&self.svg, "svg"), (&self.png, "png")] {
             if let Some(folder) = folder {
@@ -121,15 +121,15 @@ pub(crate) fn watched(what: String) -> impl Fn(f64) -> bool + Sync {
 /// A function called occasionally with the finished share, 0 to 1.
 pub(crate) type Watched<'a> = &'a (dyn Fn(f64) -> bool + Sync);
 
-/// The number of seeds done, and for each method its runs.
+/// The number of seeds done, and the runs of each method.
 type Done<R> = (u64, Vec<Vec<R>>);
 
 impl Common {
     /// Runs an experiment in blocks of seeds until all are done or Ctrl-C stops it; `run` gets a block's first seed and
-    /// length. Returns the number of seeds done and for each method its runs; `None` if it printed the part of a shard.
+    /// length. Returns the number of seeds done and the runs of each method; `None` if it printed the part of a shard.
     ///
     /// # Errors
-    /// The first error of `run`, and if it was stopped before a block was done.
+    /// The first error of `run`, or Ctrl-C before a block was done.
     pub(crate) fn in_blocks<R: Serialize>(
         &self,
         (set, of): (&'static str, &str),
@@ -147,7 +147,7 @@ impl Common {
             let runs = run(first, seeds, &watched).map_err(|error| bad(&error))?;
             return Part::print(shard, words(), methods, &runs).map(|()| None);
         }
-        // Enough for all cores, and little to lose.
+        // Enough work for all cores, and little to lose by Ctrl-C.
         let block = 4 * std::thread::available_parallelism().map_or(1, |cores| cores.get() as u64);
         let (mut done, mut all) = (0, Vec::<Vec<R>>::new());
         while done < seeds {

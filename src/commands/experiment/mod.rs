@@ -1,5 +1,5 @@
-//! `eeruf experiment`: Section 4 of the paper as two commands, with its own figures beside those found here,
-//! and robots of one make as a third.
+//! `eeruf lab experiment`: Section 4 of the paper as two commands, with the paper's figures beside those found here,
+//! and several robots of the same make as a third.
 
 mod common;
 mod set_one;
@@ -49,7 +49,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     Ok(Answer::Yes)
 }
 
-/// Prints the whole experiment from the runs of all parts.
+/// Prints the undivided experiment from the runs of all parts.
 pub(super) fn merged(args: &Args, file: &Path, runs: &shard::Runs) -> Result<(), InputError> {
     match &args.set {
         Set::One(args) => set_one::merged(args, file, runs),

@@ -1,4 +1,4 @@
-//! `eeruf experiment set-one`: eight sensors before three walls at right angles, over many alcoves.
+//! `eeruf lab experiment set-one`: eight sensors in front of three walls at right angles, over many alcoves.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -20,9 +20,9 @@ use crate::report::experiment::set_one::{describe, describe_variations};
 use crate::report::json::to_json;
 use crate::report::watch::Watch;
 
-/// Set I: eight sensors before three perpendicular walls, each reading compared with what the sensor reads alone.
+/// Set I: eight sensors facing three perpendicular walls, each reading compared with the sensor's reading alone.
 ///
-/// Every alcove is simulated by each method for as long as 8000 readings of the conventional one take. Figures are
+/// Every alcove is simulated by each method for the time of 8000 readings by the conventional one. Figures are
 /// given as 10 % / median / 90 % of the alcoves.
 #[derive(clap::Args)]
 pub(crate) struct Args {
@@ -31,7 +31,7 @@ pub(crate) struct Args {
     /// Simulate only these methods, separated by commas: eeruf,sequential; by default all of the paper and ours
     #[arg(long = "method", value_name = "NAME,..", value_delimiter = ',')]
     methods: Vec<Method>,
-    /// Number of sensors the ring has
+    /// Number of sensors on the ring
     #[arg(long, value_name = "N", default_value_t = SENSORS as u8)]
     #[arg(value_parser = clap::value_parser!(u8).range(1..=24))]
     sensors: u8,
@@ -39,7 +39,7 @@ pub(crate) struct Args {
     #[arg(long, value_name = "US", default_value_t = 60_000)]
     #[arg(value_parser = clap::value_parser!(u32).range(45_000..=1_000_000))]
     period_us: u32,
-    /// Print instead how results move with the receiver's gain, the floor of its pattern, and fading; by default for
+    /// Print instead how results vary with the receiver's gain, the floor of its pattern, and fading; by default for
     /// sequential, conventional, comparison, eeruf, flow and multi_echo
     #[arg(long, conflicts_with_all = ["svg", "png", "shard"])]
     vary: bool,
@@ -66,7 +66,7 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
     print(args, &options, &SetOne::of(&options, runs))
 }
 
-/// Prints the whole from the runs of all parts.
+/// Prints the undivided result from the runs of all parts.
 pub(super) fn merged(args: &Args, file: &Path, runs: &Runs) -> Result<(), InputError> {
     let options = options(args)?;
     let runs = runs_of(&options.methods, options.seeds, file, runs)?;
@@ -112,7 +112,7 @@ fn print(args: &Args, options: &SetOneOptions, found: &SetOne) -> Result<(), Inp
     Ok(())
 }
 
-/// The first alcove by each method: its readings, with the scene.
+/// Writes the readings of the first alcove by each method, and the scene.
 fn first_alcove(file: &Path, options: &SetOneOptions) -> Result<(), InputError> {
     let bad = bad("set-one");
     let alcove = Alcove::random(options.first);
@@ -125,14 +125,14 @@ fn first_alcove(file: &Path, options: &SetOneOptions) -> Result<(), InputError> 
         let simulation = Options { best, seed: Some(options.first), ..Options::periods(periods) };
         let readings = entry.simulate(&world, &simulation, &Stop::default(), |_| true);
         runs.push(readings.map_err(|error| bad(&error))?);
-        // Where walls and robot stand does not depend on the method.
+        // The places of walls and robot do not depend on the method.
         stage.get_or_insert(world);
     }
     let Some(world) = stage else { return Ok(()) };
     write_mcap(file, &Stage::of(&world), &runs)
 }
 
-/// A variation, one at a time: a name, and the options with it.
+/// A variation of one setting: its name, and the change of the options.
 type Variation = (&'static str, fn(SetOneOptions) -> SetOneOptions);
 
 const VARIATIONS: [Variation; 8] = [
@@ -161,7 +161,7 @@ fn fading(mut options: SetOneOptions, fading_db_rms: f64) -> SetOneOptions {
     options
 }
 
-/// The methods that `--vary` shows unless others are asked for.
+/// The methods that `--vary` shows by default.
 const VARIED: [Method; 7] = [
     Method::Sequential,
     Method::SequentialVotes,

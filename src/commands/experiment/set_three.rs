@@ -1,4 +1,4 @@
-//! `eeruf experiment set-three`: robots of one make near each other, over many placings.
+//! `eeruf lab experiment set-three`: robots of the same make near each other, over many placings.
 
 use std::path::Path;
 
@@ -16,8 +16,8 @@ use crate::report::experiment::set_three::describe;
 /// clock of its own.
 ///
 /// A ring has twelve sensors all round, with the paper's period of 100 ms. Every placing is simulated by each method
-/// for 40 periods. Figures are given as medians over the placings, with 95 % intervals. As rings are fired today
-/// (`--method in_turn,arrays,groups,sync_line,free_running,table`) they have two arrays of six, four groups of three,
+/// for 40 periods. Figures are given as medians over the placings, with 95 % intervals. Fired like today's rings
+/// (`--method in_turn,arrays,groups,sync_line,free_running,table`), they have two arrays of six, four groups of three,
 /// and modules that rest for 65 ms.
 #[derive(clap::Args)]
 pub(crate) struct Args {
@@ -46,7 +46,7 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
     print(args, &SetThree::of(&SetThreeOptions { seeds, ..options }, runs))
 }
 
-/// Prints the whole from the runs of all parts.
+/// Prints the undivided result from the runs of all parts.
 pub(super) fn merged(args: &Args, file: &Path, runs: &Runs) -> Result<(), InputError> {
     let options = options(args);
     let runs = runs_of(&options.methods, options.seeds, file, runs)?;

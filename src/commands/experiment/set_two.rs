@@ -1,4 +1,4 @@
-//! `eeruf experiment set-two`: a LabMate drives through a course of thin poles, over many courses.
+//! `eeruf lab experiment set-two`: a LabMate drives through a course of thin poles, over many courses.
 
 use std::path::{Path, PathBuf};
 
@@ -24,7 +24,7 @@ use crate::report::watch::{Watch, was_stopped};
 /// Set II: a LabMate drives through a course of 8 mm poles, about 1.6 m apart, steered by what its eight sensors
 /// read.
 ///
-/// The ring fills a histogram grid (HIMM), the vector field histogram steers. Every method drives the same seeded
+/// The ring fills a histogram grid (HIMM), and the vector field histogram steers. Every method drives the same seeded
 /// courses.
 #[derive(clap::Args)]
 pub(crate) struct Args {
@@ -34,7 +34,7 @@ pub(crate) struct Args {
     /// eeruf, eeruf_best, adaptive, flow and multi_echo
     #[arg(long = "method", value_name = "NAME,..", value_delimiter = ',')]
     methods: Vec<Method>,
-    /// Pilots: each method's own, found by the same search for each; one shared by all that an earlier search found by
+    /// Pilots: each method's own, found by the same search for each; one shared by all, found earlier by
     /// the score of eeruf; or the published settings, with and without the growth rate operator. Several are printed
     /// side by side
     #[arg(long = "pilot", value_name = "PILOT,..", value_delimiter = ',', default_value = "own")]
@@ -46,15 +46,15 @@ pub(crate) struct Args {
     /// The platform's highest speed in m/s
     #[arg(long, value_name = "M/S", default_value_t = 1.0, value_parser = speed)]
     speed: f64,
-    /// Do not pass the ring the change that the robot's own motion makes in readings, and compare within 500 us instead
+    /// Do not tell the ring the changes to expect from the robot's own motion, and compare within 500 us instead
     #[arg(long)]
     no_odometry: bool,
-    /// Let the robot know exactly where it is; by default wheels slip and are not measured quite right, and it is off
-    /// by some decimetre in the end
+    /// Let the robot know its exact place; by default wheels slip and are measured with errors, and it is off by a
+    /// decimetre or so at the end
     #[arg(long)]
     exact_odometry: bool,
-    /// Give the robots bodies: the platform its square, with the ring on its edge, and the second robot a disc, which
-    /// is then an obstacle to sound and to the platform. The pilots were tuned without
+    /// Give the robots bodies: a square for the platform, with the ring on its edge, and a disc for the second robot,
+    /// an obstacle to sound and to the platform. The pilots were tuned without
     #[arg(long)]
     bodies: bool,
     /// Drive all courses at several top speeds instead, and give the highest that each method sustains
@@ -128,7 +128,7 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
         let block = |first, seeds, watched: Watched<'_>| {
             let mut runs = set_two(&SetTwoOptions { first, seeds, ..options.clone() }, watched)?.runs;
             for run in runs.iter_mut().flatten().filter(|_| is_part) {
-                // Only pictures need them, and they take far more room than all else.
+                // Only pictures need the tracks and grids, which take far more memory than the rest.
                 (run.track, run.grid) = (vec![], vec![]);
             }
             Ok(runs)
@@ -146,7 +146,7 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
     print(args, &each)
 }
 
-/// Prints the whole from the runs of all parts.
+/// Prints the undivided result from the runs of all parts.
 pub(super) fn merged(args: &Args, file: &Path, runs: &Runs) -> Result<(), InputError> {
     let mut options = options(args)?;
     options.pilots = args.pilots.first().copied().unwrap_or_default();

@@ -1,4 +1,4 @@
-//! Parts of an experiment, run by several processes or machines and joined by `eeruf merge`.
+//! Parts of an experiment, run by several processes or machines and joined by `eeruf lab merge`.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -36,7 +36,7 @@ impl Shard {
     /// Returns this part's first seed and number of seeds.
     ///
     /// # Errors
-    /// More parts than seeds.
+    /// There are more parts than seeds.
     pub(super) fn seeds(self, first: u64, seeds: u64) -> Result<(u64, u64), String> {
         let Self { part, of } = self;
         if of > seeds {
@@ -56,7 +56,7 @@ pub(crate) struct Part {
     /// The program's version.
     pub(crate) eeruf: String,
     pub(crate) shard: Shard,
-    /// The arguments of `eeruf experiment` that decide what is run.
+    /// The arguments of `eeruf lab experiment` that decide what is run.
     pub(crate) arguments: Vec<String>,
     pub(crate) runs: Runs,
 }
@@ -71,14 +71,14 @@ impl Part {
         methods: &[Entry],
         runs: &[Vec<R>],
     ) -> Result<(), InputError> {
-        // Our own types, which always serialise.
+        // Types of our own always serialise.
         let plain = |runs: &Vec<R>| runs.iter().map(|run| serde_json::to_value(run).unwrap_or_default()).collect();
         let runs = methods.iter().zip(runs).map(|(method, runs)| (method.name().to_owned(), plain(runs))).collect();
         Ok(print_line(to_json(&Self { eeruf: Self::VERSION.to_owned(), shard, arguments, runs }))?)
     }
 }
 
-/// The runs of these methods, each with `seeds` of them, as read from `file` and others.
+/// The runs of these methods, `seeds` for each, from the parts; errors name `file`.
 pub(super) fn runs_of<R: DeserializeOwned>(
     methods: &[Entry],
     seeds: u64,

@@ -41,7 +41,7 @@ impl DiagnosisReport<'_> {
         periods().max().unwrap_or(0) - periods().min().unwrap_or(0) + 1
     }
 
-    /// Returns the numbers of rejected readings, if marked in the log, and of those surely another sensor's sound.
+    /// Returns the number of rejected readings, if the log marks them, and how many are surely another sensor's sound.
     fn rejected(&self) -> Option<(usize, usize)> {
         let firings = || self.log.firings.iter().zip(&self.diagnosis.named);
         firings().any(|(firing, _)| firing.reading.is_some()).then(|| {
@@ -58,7 +58,7 @@ impl DiagnosisReport<'_> {
         blind.map(|of| of.sensor).collect()
     }
 
-    /// Advice, one change a line.
+    /// Advice, with one change on each line.
     fn advice(&self) -> Vec<String> {
         let deaf = self.diagnosis.faults.iter();
         let mut advice: Vec<_> =

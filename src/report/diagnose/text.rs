@@ -9,7 +9,7 @@ use crate::report::table::markdown;
 
 /// Largest number of paths printed for a driving robot, each of which lasts about a second.
 const MOST_LINES: usize = 30;
-/// Difference of clocks above which it is reported.
+/// The smallest difference of clock rates that is reported, in ppm.
 const APART_PPM: f64 = 10.0;
 
 /// Writes the whole diagnosis.
@@ -65,7 +65,7 @@ fn head(found: &DiagnosisReport<'_>) -> String {
             diagnosis.paths.len()
         );
     }
-    // Beyond this a step of the usual codes of waits is within what counts as the same.
+    // Beyond this, one step of the usual waits is within the tolerance.
     if found.tolerance_us > 120 {
         _ = writeln!(
             text,
@@ -131,7 +131,7 @@ fn sensors(found: &DiagnosisReport<'_>, text: &mut String) {
             phases => {
                 let most = phases.iter().map(|&(_, fired)| fired).min().unwrap_or(0);
                 let list: Vec<_> = phases.iter().map(|(phase, _)| phase.to_string()).collect();
-                // None of n: under 3 / n, with 95 %.
+                // None of n means a share under 3 / n, with 95 % confidence.
                 format!("{} (95 %: first in under {:.0} %)", list.join(" "), (300.0 / f64::from(most)).min(100.0))
             }
         };

@@ -15,12 +15,12 @@ const TOP: f64 = 84.0;
 const BETWEEN: f64 = 40.0;
 
 /// Draws lines at the left and rings at the right, with a curve for each number of neighbours: dots where the period is
-/// proven, else a stroke from the bound to the best one found.
+/// proven, else a stroke from the bound to the best period found.
 pub(crate) fn atlas(rows: &[Row]) -> Picture {
     let drawn = |row: &&Row| (row.ring.separation, row.ring.window) == DRAWN;
     let rows: Vec<&Row> = rows.iter().filter(drawn).collect();
     let most = rows.iter().map(|row| row.ring.sensors).max().unwrap_or(1);
-    // What is open may be found at any length, so that strokes may end at the upper edge.
+    // The period found for an open ring may be of any length, so strokes may end at the upper edge.
     let longest = 1.1 * f64::from(rows.iter().map(|row| row.bound).max().unwrap_or(1));
     let mut picture = Picture::new(LEFT + 2.0 * PANEL.0 + BETWEEN + 24.0, TOP + PANEL.1 + 60.0);
     let title = "Shortest period in ms over the number of sensors, by adjacent sensors 15 ms apart";
@@ -43,7 +43,7 @@ pub(crate) fn atlas(rows: &[Row]) -> Picture {
         }
         for n in 2..=6_u8 {
             let colour = sensor_colour(usize::from(n) - 2);
-            // Where all are neighbours of each other it goes by that name.
+            // Rings whose sensors are all neighbours of each other have a neighbourhood of their own.
             let is_curve = |row: &&&Row| {
                 let layout = if panel == 0 { Neighbourhood::Line(n) } else { Neighbourhood::Ring(n) };
                 let sensors = row.ring.sensors;

@@ -71,7 +71,7 @@ impl View {
             let corners = [self.px(x_m - half, y_m + half), self.px(x_m + half, y_m - half)];
             picture.rect(corners, INK.mix(0.08 + 0.05 * f64::from(*value)));
         }
-        // The reflective corner is drawn heavier.
+        // The reflective corner is drawn thicker.
         let [x, y] = ROOM_M;
         for (from, to, width) in
             [((0.0, 0.0), (x, 0.0), 1.0), ((0.0, 0.0), (0.0, y), 1.0), ((x, 0.0), (x, y), 4.0), ((0.0, y), (x, y), 4.0)]

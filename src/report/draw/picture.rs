@@ -2,7 +2,7 @@
 //!
 //! Plotters' two backends draw the shapes: SVG as they are, bitmaps four times as large and then halved, which smooths
 //! edges and leaves two pixels for each of the picture's. Text in bitmaps is set in a part of DejaVu Sans (see
-//! `font/`), which travels in the program: what a PNG looks like does not depend on the machine. Rendering the SVG
+//! `font/`), which is built into the program: the look of a PNG does not depend on the machine. Rendering the SVG
 //! instead would need a parser for it, a text shaper and a second rasteriser (`resvg`); this way a glyph outliner
 //! (`ab_glyph`) and `png` are enough.
 
@@ -17,7 +17,7 @@ use crate::files::error::InputError;
 use crate::files::write::write;
 
 const FONT: &str = "sans-serif";
-/// The font that bitmaps are lettered in.
+/// The font of text in bitmaps.
 const FONT_FILE: &[u8] = include_bytes!("font/DejaVuSans-part.ttf");
 /// Ratio of the size of a text in SVG to that in a bitmap by plotters, with this font.
 const SVG_TEXT_SCALE: f64 = 0.939;
@@ -94,7 +94,7 @@ impl Picture {
         self.area(corners, colour);
     }
 
-    /// Text to the right of a point, its middle at the height of it.
+    /// Text to the right of a point, vertically centred on it.
     pub(crate) fn text(&mut self, text: impl Into<String>, at: At, size: f64) {
         self.text_in(text, at, size, HPos::Left, INK);
     }
@@ -153,7 +153,7 @@ impl Picture {
     }
 
     fn to_png(&self) -> Result<Vec<u8>, png::EncodingError> {
-        // A font that cannot be read leaves a picture without text; a test sees to it that ours can.
+        // A font that cannot be read leaves a picture without text; a test ensures that ours can be read.
         _ = plotters::style::register_font(FONT, FontStyle::Normal, FONT_FILE);
         let [width, height] = [self.width, self.height].map(|length| length.round() as usize * DENSITY);
         let mut large = vec![0; 3 * width * height * OVERSAMPLING * OVERSAMPLING];
@@ -172,7 +172,7 @@ impl Picture {
     }
 
     fn draw<B: DrawingBackend>(&self, area: &DrawingArea<B, Shift>, scale: f64, bitmap: bool) {
-        // Drawing to memory does not fail; a picture is never worth a panic all the same.
+        // Drawing to memory does not fail; even if it did, a picture would not be worth a panic.
         _ = area.fill(&WHITE);
         let px = |(x, y): At| ((x * scale).round() as i32, (y * scale).round() as i32);
         let thick = |width: f64| (width * scale).round().max(1.0) as u32;
@@ -187,7 +187,7 @@ impl Picture {
                 }
                 Shape::Rect { corners, colour } => {
                     let [from, mut to] = corners.map(px);
-                    // Bitmaps count the last pixel in, SVG does not.
+                    // Bitmaps include the last pixel, SVG does not.
                     if bitmap {
                         to = ((to.0 - 1).max(from.0), (to.1 - 1).max(from.1));
                     }

@@ -55,7 +55,7 @@ pub(crate) fn readings_over_time(
         }
         for reading in own {
             let t_echo = readings.t_echo_us[reading];
-            // Nothing heard stands at the upper edge.
+            // A reading without an echo is drawn at the upper edge.
             let at = (x_of(readings.fired_s[reading]), if t_echo.is_nan() { top + 3.0 } else { y_of(t_echo) });
             if readings.is_accepted(reading) {
                 let wrong = readings.is_wrong(reading, tolerance_us);

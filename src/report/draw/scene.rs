@@ -1,4 +1,4 @@
-//! A scene seen from above: walls, poles, the ring with its beams, and the critical paths that fooled someone
+//! A scene seen from above: walls, poles, the ring with its beams, and the critical paths that fooled a sensor
 //! (Figs. 1, 4).
 
 use eeruf_sim::{Faces, Point, Pose, Vector, World};
@@ -12,7 +12,7 @@ use super::style::{CAPTION, INK, SILENT, SMALL, TITLE, grid_step, sensor_colour,
 pub(crate) struct DrawnPath {
     /// The sensor that sent the sound, which gives the path its colour.
     pub(crate) emitter: usize,
-    /// From the emitter over all bounces to the receiver.
+    /// The corners, from the emitter over all bounces to the receiver.
     pub(crate) corners: Vec<Point>,
     /// Number of readings that the path spoilt.
     pub(crate) times: usize,
@@ -102,7 +102,7 @@ impl View {
         }
         let (width_m, height_m) = (high.x - low.x, high.y - low.y);
         let scale = (width / width_m).min(560.0 / height_m);
-        // What is left over of the width goes to both sides.
+        // Spare width is shared between both sides.
         let low = Point::new(low.x - 0.5 * (width / scale - width_m), low.y);
         Self { low, width_m: width / scale, scale, width, height: height_m * scale }
     }
@@ -139,7 +139,7 @@ impl View {
                 picture.dot(at, (pole.radius_m * self.scale).max(3.0), INK);
             }
         }
-        // The commonest last, on top.
+        // The most frequent path is drawn last, on top.
         for path in panel.paths.iter().rev() {
             let colour: RGBAColor = sensor_colour(path.emitter);
             let width = self.width_of(path.times, most);

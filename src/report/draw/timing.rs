@@ -34,7 +34,7 @@ pub(crate) fn timing_diagram(schedule: &AnySchedule, requirements: &Requirements
             let Some(t_fire) = schedule.t_fire(phase, x) else { continue };
             let fire = start + f64::from(t_fire.as_micros());
             let end = fire + f64::from(requirements.window_of(x).as_micros());
-            // What the second period leaves over is heard in the first.
+            // A window that lasts beyond the second period goes on in the first.
             for (from, to) in [(fire, end.min(2.0 * period)), (0.0, end - 2.0 * period)] {
                 if to > from {
                     picture.rect([(x_of(from), top + 4.0), (x_of(to), top + LANE - 10.0)], LISTENING);

@@ -14,7 +14,7 @@ use crate::report::table::{markdown, or_dash};
 fn paper(method: &str) -> &'static str {
     match method {
         "conventional" => "over 30, mostly 40-80",
-        // Said of scheduled firing; of immediate refiring the paper reports no such figure.
+        // This is for scheduled firing; the paper has no such figure for immediate refiring.
         "eeruf" => "under 3, mostly 1-2",
         _ => "",
     }
@@ -134,7 +134,7 @@ fn intervals(method: &str, figures: &Figures) -> Vec<String> {
     ]
 }
 
-/// Formats median and 90 %, and the number that never see it.
+/// Formats median and 90 % in periods, and the share of steps that are never seen.
 fn latency(latency: Option<Latency>) -> String {
     let Some(Latency { median, p90, never, .. }) = latency else { return "-".to_owned() };
     let periods = |periods: Option<u32>| periods.map_or_else(|| "never".to_owned(), |periods| periods.to_string());

@@ -8,7 +8,7 @@ use eeruf_sim::experiments::set_three::{Arrangement, Brief, Figures, Group, PERI
 use crate::report::percent::{fine_percent, median};
 use crate::report::table::{markdown, or_dash};
 
-/// The most methods that one table has columns for.
+/// The largest number of methods in one table.
 const WIDEST: usize = 8;
 
 pub(crate) fn describe(found: &SetThree) -> String {
@@ -33,7 +33,7 @@ pub(crate) fn describe(found: &SetThree) -> String {
     _ = writeln!(text, "{}", markdown(&header, found.methods.iter().map(|(way, figures)| accepted(way, figures))));
     let header = ["% of the time", "right", "unknown", "phantom", "too far", "faint"];
     _ = writeln!(text, "\n{}", markdown(&header, found.methods.iter().map(|(way, figures)| belief(way, figures))));
-    // Many methods stand in several tables of about the same width.
+    // Many methods are split over several tables of about the same width.
     let methods = found.methods.len().max(1);
     let columns = methods.div_ceil(methods.div_ceil(WIDEST));
     for (at, part) in found.methods.chunks(columns).enumerate() {

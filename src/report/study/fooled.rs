@@ -9,9 +9,9 @@ use eeruf_sim::{Cause, HeardPath, Method, Readings, SensorId};
 
 use crate::report::bounces::by_way_of;
 
-/// The most rows that are printed.
+/// The largest number of printed rows.
 const ROWS: usize = 8;
-/// The methods compared if there are more than columns: without a filter, with a filter, and with alternation too.
+/// The methods compared if there are more of them than columns: without filter, with filter, and with alternation too.
 const COMPARED: [Method; 4] = [Method::Conventional, Method::Comparison, Method::Eeruf, Method::EerufBest];
 
 /// Key of a path in all runs: receiver, sender and bounces.

@@ -9,7 +9,7 @@ use super::found::{Study, TOLERANCE_US, of_robot};
 use crate::files::error::InputError;
 use crate::report::draw::{self, DrawnPath, Panel};
 
-/// The most paths that are drawn for one method.
+/// The largest number of paths drawn for one method.
 const MOST_PATHS: usize = 24;
 /// Number of readings of one sensor that are drawn.
 const SHOWN_READINGS: usize = 70;
@@ -18,7 +18,7 @@ const SHOWN_READINGS: usize = 70;
 pub(crate) fn pictures(folder: &Path, ending: &str, world: &World, study: &Study) -> Result<usize, InputError> {
     let file = |name: &str| folder.join(name).with_extension(ending);
     comparison(study, &file("methods"))?;
-    // Before and after, where both were simulated; or what there is.
+    // A method without a filter and one of ours, if both were simulated; or else the first and the last.
     let before = study.of(Method::Conventional).or_else(|| study.runs.first());
     let known = [Method::Flow, Method::Eeruf, Method::EerufBest];
     let after = known.into_iter().find_map(|method| study.of(method)).or_else(|| study.runs.last());
@@ -98,13 +98,13 @@ fn corners(world: &World, readings: &Readings, index: u32, path: &HeardPath) -> 
     world.scene().bounce_points(position(path.emitter, sent_s)?, position(path.receiver, heard_s)?, &path.bounces)
 }
 
-/// The robot and the sensor that one method fooled most and farthest; the other method must have accepted some of that
-/// sensor's readings, or there is little to see.
+/// The robot and the sensor that were fooled most and farthest under one method; the other method must have accepted
+/// some of that sensor's readings, or there is little to see.
 fn most_helped(before: &Readings, after: &Readings) -> (usize, u8) {
     let mut scores = BTreeMap::<SensorId, [f64; 2]>::new();
     for reading in (0..before.len()).filter(|&reading| is_fooled(before, reading)) {
         let off_us = (before.t_echo_us[reading] - before.reference_us[reading]).abs();
-        // Where it would read nothing alone, all of the range is wrong.
+        // If the sensor would read nothing alone, the whole range is wrong.
         scores.entry(before.id(reading)).or_default()[0] += if off_us.is_nan() { 2e4 } else { off_us };
     }
     for reading in (0..after.len()).filter(|&reading| after.is_accepted(reading)) {
@@ -121,8 +121,8 @@ fn is_fooled(of: &Readings, reading: usize) -> bool {
     of.is_accepted(reading) && is_foreign && of.is_wrong(reading, TOLERANCE_US)
 }
 
-/// Returns the stretch of a sensor's readings that shows most: one method is fooled, and of what the other reads there,
-/// accepted and rejected are most balanced.
+/// Returns the stretch of a sensor's readings that shows most: one method is fooled, and the other accepts and rejects
+/// about equally many readings.
 fn richest_stretch(before: &Readings, after: &Readings, sensor: u8) -> (f64, f64) {
     let own: Vec<usize> = (0..after.len()).filter(|&reading| after.sensor[reading] == sensor).collect();
     let fooled = (0..before.len()).filter(|&reading| before.sensor[reading] == sensor && is_fooled(before, reading));

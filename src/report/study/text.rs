@@ -51,7 +51,7 @@ pub(crate) fn describe(file: &Path, world: &World, study: &Study) -> String {
     text
 }
 
-/// Three tables, each narrow enough for a page: readings, how often and how fresh, belief.
+/// Three tables, each narrow enough for a page: readings, their rate and age, and belief.
 fn tables(runs: &[Readings]) -> String {
     let summaries: Vec<Summary> = runs.iter().map(Readings::summary).collect();
     let share = |share: Option<f64>| share.map_or_else(|| "-".to_owned(), fine_percent);

@@ -70,13 +70,13 @@ impl<'a> Bytes<'a> {
         self.array().map(f32::from_le_bytes)
     }
 
-    /// Bytes after their number, as `u32`.
+    /// Bytes that follow their number, a `u32`.
     pub(crate) fn counted(&mut self) -> Option<&'a [u8]> {
         let length = self.u32()?;
         self.take(usize::try_from(length).ok()?)
     }
 
-    /// A text after its length in bytes, as `u32`; invalid bytes are replaced.
+    /// A text that follows its length in bytes, a `u32`; invalid bytes are replaced.
     pub(crate) fn text(&mut self) -> Option<String> {
         self.counted().map(|bytes| String::from_utf8_lossy(bytes).into_owned())
     }

@@ -16,7 +16,7 @@ use crate::{bytes, flight, mcap, ros1, rosbag2, serial, text};
 /// in the order in which they were recorded. The form is recognised by the first bytes, even of a file that is packed
 /// as a whole, or by the ending of its name; that of text by its lines. [`Report::guesses`] lists what was guessed.
 ///
-/// A log without sensors is no error: [`Report::sensors`] is empty then, and [`Report::skipped`] says what was found.
+/// A log without sensors is no error: [`Report::sensors`] is then empty, and [`Report::skipped`] says what was found.
 ///
 /// # Errors
 /// A file that cannot be opened, a folder without bag files, a known form that cannot be read, or an option that does
@@ -168,7 +168,7 @@ fn read_packed(
     let mut input = first.as_slice().chain(input);
     match form {
         Form::Packed(_) => return Err(FileError::new(name, "packed twice; expected once: unpack it first")),
-        // Nothing came out.
+        // Nothing could be unpacked.
         Form::Text if error.is_some() => {}
         Form::Text => read_in_order(&mut UntilError::new(input, &mut error), name, form, options, sink)?,
         Form::Serial | Form::Flight(_) | Form::Foreign(_) => {

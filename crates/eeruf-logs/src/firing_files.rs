@@ -22,8 +22,8 @@ impl FiringLog {
     /// Reads a log, text, MCAP or frames of the serial line, recognised by its first bytes, packed or not.
     ///
     /// # Errors
-    /// A file that cannot be read, columns that are missing, or text without a whole line; MCAP in which there is no
-    /// firing, or there are those of several rings.
+    /// A file that cannot be read, columns that are missing, or text without a whole line; MCAP without firings,
+    /// or with those of several rings.
     pub fn read(file: &Path) -> Result<Self, FileError> {
         if file.is_dir() {
             return Err(not_firings(file, "a folder"));

@@ -10,11 +10,11 @@ use crate::text::{Line, Separator, Source, is_comment, separated};
 use crate::value::{is_no_echo, number, prefix};
 use eeruf_files::FileError;
 
-/// The most sensors of a ring.
+/// The largest number of sensors on a ring.
 pub(crate) const MAX_SENSORS: u8 = 64;
 
 const NEEDED: [&str; 5] = ["sensor", "fired_us", "period", "phase", "t_echo_us"];
-/// The columns that are read.
+/// The columns to read.
 const NAMES: [&str; 8] = ["sensor", "fired_us", "period", "phase", "t_echo_us", "reading", "sends", "g"];
 
 /// The kind with this spelling in logs.

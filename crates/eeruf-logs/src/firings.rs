@@ -40,7 +40,7 @@ pub struct Firing {
     pub t_echo_us: Option<u32>,
     /// The ring's verdict on the reading, if the log says it.
     pub reading: Option<ReadingKind>,
-    /// The rate at which readings change with the robot's motion, in microseconds for each millisecond, if it is said.
+    /// The rate at which readings change with the robot's motion, in microseconds for each millisecond, if known.
     pub g_us_ms: Option<f32>,
 }
 
@@ -99,7 +99,7 @@ impl FiringLog {
 
     /// Warnings about legal but implausible times, such as milliseconds for microseconds.
     pub fn doubts(&self) -> Vec<String> {
-        /// Shortest plausible times: sooner sound is ringing of the transducer, and sensors of a ring fire less often.
+        /// Shortest plausible times: earlier sound is ringing of the transducer, and sensors of a ring fire less often.
         const LEAST_US: i64 = 200;
         let echo = self.firings.iter().filter_map(|firing| firing.t_echo_us).max().map(i64::from);
         let span = self.firings.last().zip(self.firings.first()).map(|(last, first)| last.fired_us - first.fired_us);
@@ -114,10 +114,10 @@ impl FiringLog {
             .collect()
     }
 
-    /// Writes the log as it is read.
+    /// Writes the log in the form that [`FiringLog::read`] reads.
     ///
     /// # Errors
-    /// If it cannot be written.
+    /// The log cannot be written.
     pub fn write(&self, mut output: impl Write) -> std::io::Result<()> {
         let sends = if self.listened.is_empty() { "" } else { ",sends" };
         let moves = self.firings.iter().any(|firing| firing.g_us_ms.is_some());

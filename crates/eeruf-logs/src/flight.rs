@@ -53,7 +53,7 @@ struct Input<'a> {
 }
 
 impl Input<'_> {
-    /// The next bytes, this many; `None` at the end, if fewer are left.
+    /// The next `length` bytes; `None` if fewer are left.
     fn take(&mut self, length: usize) -> io::Result<Option<Vec<u8>>> {
         let mut bytes = vec![];
         self.at += (&mut *self.input).take(length as u64).read_to_end(&mut bytes)? as u64;
@@ -148,7 +148,7 @@ fn field(fields: &Fields, body: &[u8], name: &str) -> Option<f64> {
     None
 }
 
-/// Text that zeroes end.
+/// A text that ends at the first zero byte.
 fn text(bytes: &[u8]) -> String {
     String::from_utf8_lossy(bytes.split(|&byte| byte == 0).next().unwrap_or_default()).into_owned()
 }

@@ -27,7 +27,7 @@ pub struct Counted {
     pub invalid: u64,
     /// Times of the earliest and of the latest reading, in nanoseconds.
     pub between_ns: Option<(u64, u64)>,
-    /// Number of readings whose time is before that of the reading before.
+    /// Number of readings whose time is before that of the previous reading.
     pub backwards: u64,
     /// Number of pauses after which a reading is not compared with earlier ones.
     pub gaps: u64,
@@ -71,7 +71,7 @@ struct Clock {
 }
 
 impl Clock {
-    /// Returns true if a reading at this time must not be compared with the one before.
+    /// Returns true if a reading at this time must not be compared with the previous one.
     fn breaks(&mut self, at_ns: u64) -> bool {
         /// Least length of a gap: in nanoseconds, and in usual intervals.
         const SHORTEST_GAP_NS: f64 = 1e9;
@@ -97,13 +97,13 @@ impl Judging {
     /// errors.
     ///
     /// # Errors
-    /// A number of readings that the judge does not have.
+    /// The judge cannot compare this number of readings.
     pub fn new(judge: RangeJudge, speed_of_sound: f64, log: &Path) -> Result<Self, RingError> {
         let fresh = EchoFilter::new(judge.t_delta, judge.consecutive)?;
         Ok(Self { sensors: Vec::new(), fresh, speed_of_sound, out: None, log: log.to_owned() })
     }
 
-    /// Also writes each reading to its topic, and the accepted ones to `TOPIC/accepted`: the range, `+Inf` where
+    /// Writes each reading to its topic too, and the accepted ones to `TOPIC/accepted`: the range, `+Inf` where
     /// nothing is in range, `-Inf` for too close.
     #[must_use]
     pub fn writing(self, out: McapWriter) -> Self {
@@ -147,7 +147,7 @@ impl Judging {
 
 impl Judged {
     fn judge(&mut self, reading: &LogReading, speed_of_sound: f64) -> Result<Option<ReadingKind>, String> {
-        // Each filter has one sensor, so that it knows it.
+        // Each filter has one sensor, 0, so this never happens.
         let failed = |error: SensorError| error.to_string();
         if let Some(at_ns) = reading.at_ns {
             let broken = self.note_time(at_ns);
@@ -176,7 +176,7 @@ impl Judged {
         Ok(Some(kind))
     }
 
-    /// Returns true if the time breaks the comparison with the reading before.
+    /// Returns true if the time breaks the comparison with the previous reading.
     fn note_time(&mut self, at_ns: u64) -> bool {
         let (from, to) = self.counted.between_ns.unwrap_or((at_ns, at_ns));
         self.counted.between_ns = Some((from.min(at_ns), to.max(at_ns)));

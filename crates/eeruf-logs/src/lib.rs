@@ -11,10 +11,10 @@
 //! | frames of `eeruf-serial`, as they came | each firing |
 //! | any of these packed | as a whole, by gzip, bzip2 or zstd |
 //!
-//! `Range` has had a `variance` since ROS 2 Iron: the file's schema says if it is there, or else the message's length.
-//! A `LaserScan` counts as a ring of sonars if it has at most 64 beams, or if its topic is asked for; each beam is a
-//! sensor. Sensors are counted from 0. Units, times and values for no echo are guessed if the log does not state them;
-//! [`Report::guesses`] lists each guess with the option that overrides it.
+//! `Range` has had a `variance` since ROS 2 Iron: the file's schema says whether it is there, or else the message's
+//! length. A `LaserScan` counts as a ring of sonars if it has at most 64 beams, or if its topic is asked for; each beam
+//! is a sensor. Sensors are counted from 0. Units, times and values for no echo are guessed if the log does not state
+//! them; [`Report::guesses`] lists each guess with the option that overrides it.
 //!
 //! Damaged or cut parts are skipped and listed in [`Report::damage`]; the rest is read.
 //!

@@ -1,7 +1,7 @@
 //! Reads MCAP files (mcap.dev/spec) record by record, in the order in which they were recorded.
 //!
 //! The readers of the crate `mcap`, with which this crate writes, end at the first record that is damaged. Recordings
-//! often end with the battery, so this module parses records itself: a damaged chunk loses only itself.
+//! often end when the battery is empty, so this module parses records itself and loses only damaged chunks.
 
 use std::collections::HashMap;
 use std::io::{self, BufReader, Read, Seek, SeekFrom};
@@ -52,7 +52,7 @@ pub(crate) fn read(opened: &mut dyn Input, file: &Path, packed: bool, sink: &mut
     let size = opened.seek(SeekFrom::End(0)).map_err(failed)?;
     let mut state = State { packed, ..State::default() };
     let found_before = sink.of_topics.found;
-    // Topics are found in the chunks too; that there is no summary is no damage.
+    // Topics are found in the chunks too, so a missing summary is not damage.
     match summary(opened, size) {
         Ok(Some(summary)) => _ = state.topics_of(&summary, sink),
         Ok(None) => sink.damage(file, None, "the check sum of the summary at its end is wrong; it is not used"),
@@ -91,7 +91,7 @@ pub(crate) fn read(opened: &mut dyn Input, file: &Path, packed: bool, sink: &mut
             if letter == CHUNK {
                 body.clear();
                 (&mut input).take(LARGEST_CHUNK).read_to_end(&mut body).map_err(failed)?;
-                // What stands in it before the cut.
+                // Reads the part of the chunk before the cut.
                 _ = unpack_chunk(&body, &mut state.zstd, &mut chunk, false);
                 state.records(&chunk, sink);
             }
@@ -161,7 +161,7 @@ fn is_chunk(input: &mut BufReader<&mut dyn Input>, start: u64, size: u64) -> io:
 /// The summary at the end of a file, which repeats schemas and channels and counts messages: empty if there is none,
 /// `None` if its check sum is wrong.
 fn summary(file: &mut dyn Input, size: u64) -> io::Result<Option<Vec<u8>>> {
-    // Where the summary begins, where in it offsets do, and its check sum.
+    // The positions of the summary and of its offsets, and its check sum.
     const FIELDS: usize = 8 + 8 + 4;
     let end = size.saturating_sub((RECORD_HEAD + FIELDS + MAGIC.len()) as u64);
     file.seek(SeekFrom::Start(end))?;

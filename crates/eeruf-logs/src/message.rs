@@ -1,7 +1,7 @@
 //! Decoding of messages with ranges: CDR of ROS 2, and the format of ROS 1.
 //!
-//! `Range` has had a `variance` since ROS 2 Iron. The file's schema says if a message has one; without a schema the
-//! message's length does.
+//! `Range` has had a `variance` since ROS 2 Iron. The file's schema says whether a message has one; without a schema
+//! the message's length does.
 
 use std::rc::Rc;
 

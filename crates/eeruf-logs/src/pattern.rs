@@ -212,7 +212,7 @@ impl Lags {
         for end in 1..=lags.len() {
             if end == lags.len() || lags[end] - lags[end - 1] > tolerance as i64 {
                 let own = &lags[start..end];
-                // What comes seldom is a lost reading.
+                // A rare lag comes from a lost reading.
                 if own.len() * 50 >= lags.len() && own.len() > 1 {
                     widest = widest.max(own[own.len() - 1] - own[0]);
                     clusters.push((

@@ -41,8 +41,8 @@ pub struct Replayed {
 /// Judges the readings of a log again as a flow ring does, from the actual firings. Returns one for each firing of the
 /// log; `None` for late edges, which are not readings.
 ///
-/// The readings' kinds supply information that the log lacks: if silent sensors had shown that they listened, and which
-/// lines were stuck. Earlier firings are unknown, and silence is assumed before the log.
+/// The readings' kinds supply information that the log lacks: whether silent sensors had shown that they listened, and
+/// which lines were stuck. Earlier firings are unknown, and silence is assumed before the log.
 ///
 /// # Errors
 /// Settings that a ring refuses.
@@ -51,7 +51,7 @@ pub fn replay_flow(log: &FiringLog, settings: &FlowSettings) -> Result<Vec<Optio
     // An edge after the window is a row of its own.
     let is_late = |firing: &Firing| firing.reading == Some(ReadingKind::Late);
     let rows: Vec<_> = (0..log.firings.len()).filter(|&row| !is_late(&log.firings[row])).collect();
-    // After so long nothing of before is known.
+    // After such a pause, earlier firings no longer matter.
     let pauses = |two: &[usize]| log.firings[two[1]].fired_us - log.firings[two[0]].fired_us > 1 << 29;
     let mut from = 0;
     while from < rows.len() {
@@ -200,7 +200,7 @@ impl Recorded {
 impl Plan for Recorded {
     fn deadline(&self) -> Instant {
         let last = || self.firings.last().map_or(Instant::default(), |&(at, _)| at);
-        // After the last one a period that does not end within reach.
+        // After the last firing, the period does not end within reach.
         self.firings.get(self.next).map_or_else(|| last() + Micros::new(1 << 30), |&(at, _)| at)
     }
 

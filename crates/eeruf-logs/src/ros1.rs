@@ -1,6 +1,6 @@
 //! Reads ROS 1 bags, format 2.0 (wiki.ros.org/Bags/Format/2.0), record by record, without their index.
 //!
-//! The only crate for them needs the index, which a cut recording lacks.
+//! The only crate for such bags needs the index, which a cut recording lacks.
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry;
@@ -85,7 +85,7 @@ pub(crate) fn read(opened: &mut dyn Input, file: &Path, sink: &mut Sink<'_>) -> 
     let size = opened.seek(SeekFrom::End(0)).map_err(failed)?;
     let mut state = State::default();
     let found_before = sink.of_topics.found;
-    // Connections are found in the chunks too; that there is no index is no damage.
+    // Connections are found in the chunks too, so a missing index is not damage.
     if let Ok(index) = index(opened, size) {
         state.connections_of(&index, sink);
     }
@@ -136,7 +136,7 @@ pub(crate) fn read(opened: &mut dyn Input, file: &Path, sink: &mut Sink<'_>) -> 
             body.clear();
             (&mut input).take(LARGEST_CHUNK.into()).read_to_end(&mut body).map_err(failed)?;
             if let Some(header) = Header::of(&head).filter(|header| header.op == CHUNK) {
-                // What stands in it before the cut.
+                // Reads the part of the chunk before the cut.
                 _ = unpack_chunk(&header, &body, &mut chunk);
                 state.records(&chunk, sink);
             }
@@ -282,7 +282,7 @@ impl State {
                     entry.insert(sink.topic(&name, &type_name, definition.as_deref(), Some(Encoding::Ros1)));
                 }
             }
-            // Nothing else stands in a chunk.
+            // A chunk has no other records.
             _ => return None,
         }
         Some(())

@@ -91,7 +91,7 @@ pub(crate) struct Type {
 }
 
 impl Type {
-    /// The definition as `ros2msg` has it.
+    /// The definition in the format `ros2msg`.
     pub(crate) fn definition(&self) -> String {
         let mut text = self.fields.to_owned();
         for (name, fields) in self.parts {

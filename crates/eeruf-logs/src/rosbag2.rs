@@ -45,7 +45,7 @@ pub(crate) fn read(folder: &Path, sink: &mut Sink<'_>) -> Result<(), FileError> 
     }
     let (damage, found_before) = (sink.report.damage.len(), sink.of_topics.found);
     for file in files {
-        // What cannot be opened takes nothing from the other files.
+        // A file that cannot be opened does not affect the others.
         let read = match file.extension().and_then(|ending| ending.to_str()) {
             Some("mcap") => match File::open(&file) {
                 Ok(mut opened) => crate::mcap::read(&mut opened, &file, found.packed, sink),
@@ -173,7 +173,7 @@ pub(crate) fn read_sqlite(opened: &Path, file: &Path, packed: bool, sink: &mut S
     Ok(())
 }
 
-/// The topics by their numbers; with their schemas, which bags have from Iron on.
+/// The topics by their numbers, with their schemas, which bags have from Iron on.
 fn topics(database: &Connection, file: &Path, sink: &mut Sink<'_>) -> rusqlite::Result<Vec<(i64, Topic)>> {
     let schema = |type_name: &str| -> Option<String> {
         let definition = "SELECT encoded_message_definition FROM message_definitions WHERE topic_type = ?1";

@@ -111,7 +111,7 @@ impl Schema {
         if let Some(fields) = self.0.get(name) {
             return Some(fields);
         }
-        // Without a package it is of the same one, or the header.
+        // A type without a package is in the same package, or is the header.
         let ends = |known: &&String| known.rsplit('/').next() == name.rsplit('/').next();
         self.0.keys().find(ends).map(|known| self.0[known].as_slice())
     }

@@ -65,7 +65,7 @@ fn frames(mut input: impl Read, mut each: impl FnMut(FiringMessage, i64)) -> io:
                 }
             };
             is_first = false;
-            // A large step is a board that restarted.
+            // A large step means that the board restarted.
             let skipped = next.map_or(0, |next: u16| received.sequence.wrapping_sub(next));
             line.lost += u64::from(if skipped < 1 << 12 { skipped } else { 0 });
             next = Some(received.sequence.wrapping_add(1));

@@ -59,7 +59,7 @@ impl Report {
     }
 }
 
-/// Number of damages that are listed; further ones are only counted.
+/// Largest number of listed damages; further ones are only counted.
 const LISTED: usize = 100;
 
 /// Knowledge of the topics of a log.
@@ -75,7 +75,7 @@ pub(crate) struct Topics {
     pub(crate) warned: std::collections::HashSet<String>,
 }
 
-/// Takes messages, and hands on readings.
+/// A receiver of messages that passes on their readings.
 pub(crate) struct Sink<'a> {
     pub(crate) report: Report,
     pub(crate) each: &'a mut dyn FnMut(&Report, &LogReading),
@@ -132,7 +132,7 @@ impl<'a> Sink<'a> {
         self.note(FileError::new(file, message).at_byte(at));
     }
 
-    /// Lists damage, as far as there is room.
+    /// Lists damage, or only counts it if the list is full.
     pub(crate) fn note(&mut self, damage: FileError) {
         if self.report.damage.len() < LISTED {
             self.report.damage.push(damage);

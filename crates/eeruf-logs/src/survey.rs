@@ -1,4 +1,4 @@
-//! Findings of a measuring run: which sensor hears which, along paths of what length, and how certainly.
+//! Findings of a measuring run: which sensor hears which, along which paths, and how certainly.
 //!
 //! In each slot of a survey at most two sensors fire, and all earlier sound has died away: see
 //! [`SurveyPlan`](https://docs.rs/eeruf-core/latest/eeruf_core/struct.SurveyPlan.html). So an edge is the sensor's own
@@ -34,11 +34,11 @@ impl Default for PathSettings {
 /// Findings of a survey.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surveyed {
-    /// Number of sensors the ring has.
+    /// Number of sensors on the ring.
     pub sensors: usize,
     /// The paths, by receiver and sender, shortest first. A sensor's own echo is a path from itself.
     pub paths: Vec<FoundPath>,
-    /// Number of edges, and of those that no path explains.
+    /// Number of edges, and of edges that no path explains.
     pub edges: (u32, u32),
     /// The longest echo time of the log in microseconds, and so the least listening time.
     pub window_us: u32,
@@ -111,13 +111,13 @@ struct Place {
     trials: u32,
 }
 
-/// The most paths to one receiver.
+/// The largest number of paths to one receiver.
 const MOST_PATHS: usize = 200;
 /// Number of places of each sender that are examined closely before the best is taken.
 const LOOKED_AT: usize = 4;
 /// Share of the unhidden slots with an offset in which a path must be heard to support that offset.
 const SUPPORTS: f64 = 0.5;
-/// Number from which on votes are by slot, beyond all offsets.
+/// Base of votes that are by slot, beyond all offsets.
 const BY_SLOT: i64 = 1 << 40;
 
 /// Finds the paths between all sensors of a survey.
@@ -252,7 +252,7 @@ impl Search {
                 continue;
             }
             let off = heard.echo_us.map(|echo_us| echo_us - predicted);
-            // Something earlier hid it, or what came together with it is explained.
+            // An earlier edge hid it, or an edge at the same time is already explained.
             if off.is_some_and(|off| off < -self.tolerance || off <= self.tolerance && heard.is_explained) {
                 continue;
             }

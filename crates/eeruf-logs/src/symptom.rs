@@ -14,7 +14,7 @@ pub enum Symptom {
     Coarse,
     /// The readings are scattered over all values.
     Scatters,
-    /// The sensor reads the echo of its own firing before.
+    /// The sensor reads the echo of its own previous firing.
     Stale,
     /// The sensor jumps between two values.
     Jumps,

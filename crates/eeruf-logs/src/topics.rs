@@ -141,7 +141,7 @@ impl Sink<'_> {
         }
     }
 
-    /// Warns about ranges that no ultrasonic sensor has, such as centimetres instead of metres.
+    /// Warns about ranges that no ultrasonic sensor measures, such as centimetres instead of metres.
     fn doubt(&mut self, topic: &str) {
         /// The farthest that a sensor in air sees is about 11 m.
         const FARTHEST_M: f64 = 25.0;
@@ -211,7 +211,7 @@ impl Sink<'_> {
         }
     }
 
-    /// Number of messages that a file claims to have, and the number found before it.
+    /// Compares the number of messages that a file claims to have with the number found in it.
     pub(crate) fn counted(&mut self, file: &Path, counted: u64, before: u64) {
         let missing = (before + counted).saturating_sub(self.of_topics.found);
         if missing > 0 {

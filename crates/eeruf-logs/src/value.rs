@@ -240,13 +240,13 @@ pub(crate) fn elapsed_ns(text: &str) -> Option<u64> {
     (0.0..1e10).contains(&time_s).then(|| (time_s * 1e9).round() as u64)
 }
 
-/// Nanoseconds of a time in brackets: a date, seconds, seconds with those since the line before, or a time with a unit.
+/// Nanoseconds of a time in brackets: a date, seconds, seconds and those since the last line, or a time with a unit.
 fn bracketed_ns(inner: &str) -> Option<u64> {
     let seconds = |text: &str| number(text, false).filter(|&s| text.contains('.') && (0.0..1e10).contains(&s));
     // A level and the name of a program may follow.
     let is_level = |rest: &str| rest.split(' ').next().is_some_and(|word| LEVELS.contains(&word));
     let leveled = inner.split_once(' ').filter(|(_, rest)| is_level(rest)).and_then(|(time, _)| calendar_ns(time));
-    // Zephyr parts microseconds from milliseconds.
+    // Zephyr separates microseconds from milliseconds.
     let parted = inner.rsplit_once(',').filter(|(time, us)| us.len() == 3 && time.contains('.'));
     let parted = parted.and_then(|(time, us)| calendar_ns(&format!("{time}{us}")));
     calendar_ns(inner).or(leveled).or(parted).or_else(|| elapsed_ns(inner)).or_else(|| {
@@ -261,7 +261,7 @@ fn plain_time(line: &str) -> Option<(u64, &str)> {
     let first = line.find(is_end)?;
     let second = line[first..].trim_start();
     let second = line.len() - second.len() + second.find(is_end).unwrap_or(second.len());
-    // A time with a unit is what a colon ends.
+    // A time with a unit ends with a colon.
     let until_colon = |text: &str| text.strip_suffix(':').and_then(elapsed_ns);
     let time = |text: &str| calendar_ns(text.trim_end_matches(':')).or_else(|| until_colon(text));
     let both = line.get(..second).and_then(|text| Some((time(text)?, &line[second..])));
@@ -274,7 +274,7 @@ fn plain_time(line: &str) -> Option<(u64, &str)> {
     let (own, rest) = (line[..first].trim_end_matches([':', '-']), &line[first..]);
     // A date whose time is a part of the next cell.
     let is_half = !own.contains(':') && rest.trim_start().get(..3).is_some_and(|next| next.contains(':'));
-    // Seconds since 1970, where the values after them are no cells parted by spaces.
+    // Seconds since 1970, if the values after them are not cells separated by spaces.
     let seconds = number(own, false).filter(|&s| own.contains('.') && (1e9..1e10).contains(&s));
     let seconds = seconds.filter(|_| rest.contains([',', ';', ':', '=']));
     let ns = calendar_ns(own).filter(|_| !is_half).or(seconds.map(|s| (s * 1e9).round() as u64))?;
@@ -288,7 +288,7 @@ pub(crate) fn prefix(line: &str) -> Option<(u64, &str)> {
         return Some(found);
     }
     let (mut time, mut rest) = (None, line);
-    // A bus's tools: `(1700000000.123456) can0 ..`.
+    // The form of bus tools: `(1700000000.123456) can0 ..`.
     let in_parentheses = line.strip_prefix('(').and_then(|inner| inner.split_once(") "));
     let since_1970 = |text: &str| number(text, false).filter(|&s| text.contains('.') && (1e9..1e10).contains(&s));
     if let Some((s, after)) = in_parentheses.and_then(|(inner, after)| Some((since_1970(inner)?, after))) {
@@ -301,7 +301,7 @@ pub(crate) fn prefix(line: &str) -> Option<(u64, &str)> {
             && (time.is_none() || LEVELS.contains(&inner) || after.starts_with([':', '[']));
         // Arduino's log of an ESP32: `[  1234][I][main.cpp:42]`, in milliseconds.
         let is_level = matches!(after.as_bytes(), [b'[', b'E' | b'W' | b'I' | b'D' | b'V', b']', ..]);
-        // A number alone is one too where the lines' numbers rise, as `strip` sees.
+        // A number alone is a time too if the numbers of the lines rise, which `strip` checks.
         let is_ms = is_level || after.contains([':', '=']);
         let ms = inner.parse::<u64>().ok().filter(|_| is_ms).and_then(|ms| ms.checked_mul(1_000_000));
         match ms.or_else(|| bracketed_ns(inner)).filter(|_| time.is_none()) {

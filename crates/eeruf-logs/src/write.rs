@@ -37,7 +37,7 @@ impl McapWriter {
     /// Creates the file.
     ///
     /// # Errors
-    /// If it cannot be written.
+    /// The file cannot be created.
     pub fn create(file: &Path) -> Result<Self, FileError> {
         let opened = File::create(file).map_err(|error| FileError::writing(file, &error))?;
         let options = WriteOptions::new().profile("ros2").library("eeruf");
@@ -50,7 +50,7 @@ impl McapWriter {
     /// Writes a reading to a topic, at time 0 if it has none. A frame is at most 4 GB long.
     ///
     /// # Errors
-    /// If the file cannot be written.
+    /// The file cannot be written.
     pub fn range(&mut self, topic: &str, frame: &str, reading: &LogReading) -> Result<(), FileError> {
         let at_ns = reading.at_ns.unwrap_or(0);
         self.write(topic, &ros2::RANGE, at_ns, |out| ros2::range(out, frame, reading))
@@ -60,7 +60,7 @@ impl McapWriter {
     /// clock; the message's own time is in nanoseconds.
     ///
     /// # Errors
-    /// If the file cannot be written.
+    /// The file cannot be written.
     pub fn firing(&mut self, topic: &str, clock: &str, at_ns: u64, firing: &Firing) -> Result<(), FileError> {
         self.write(topic, &ros2::FIRINGS, at_ns, |out| ros2::firing(out, at_ns, clock, firing))
     }
@@ -68,7 +68,7 @@ impl McapWriter {
     /// Writes the places of frames, a `tf2_msgs/msg/TFMessage`.
     ///
     /// # Errors
-    /// If the file cannot be written.
+    /// The file cannot be written.
     pub fn transforms(&mut self, topic: &str, at_ns: u64, transforms: &[Transform]) -> Result<(), FileError> {
         self.write(topic, &ros2::TRANSFORMS, at_ns, |out| ros2::transforms(out, at_ns, transforms))
     }
@@ -76,7 +76,7 @@ impl McapWriter {
     /// Writes a robot's place, and its velocities in its own frame, a `nav_msgs/msg/Odometry`.
     ///
     /// # Errors
-    /// If the file cannot be written.
+    /// The file cannot be written.
     pub fn odometry(
         &mut self,
         topic: &str,
@@ -91,7 +91,7 @@ impl McapWriter {
     /// Writes markers, as a `visualization_msgs/msg/MarkerArray`.
     ///
     /// # Errors
-    /// If the file cannot be written.
+    /// The file cannot be written.
     pub fn markers(&mut self, topic: &str, at_ns: u64, markers: &[Marker]) -> Result<(), FileError> {
         self.write(topic, &ros2::MARKERS, at_ns, |out| ros2::markers(out, at_ns, markers))
     }
@@ -124,7 +124,7 @@ impl McapWriter {
     /// Writes the rest of the file, and the index.
     ///
     /// # Errors
-    /// If the file cannot be written.
+    /// The file cannot be written.
     pub fn finish(mut self) -> Result<(), FileError> {
         self.writer.finish().map(drop).map_err(|error| unwritten(&self.file, &error))
     }

@@ -1,10 +1,10 @@
-"""Replays bags that `write_bags.py` wrote, and prints how fast and in how much memory: a row for each kind of bag.
+"""Replay bags of `write_bags.py`, and print speed and memory: a row for each kind of bag.
 
     python replay_bags.py EERUF SMALL LARGE MESSAGES
 
-SMALL and LARGE are folders of bags; MESSAGES is how many ranges each of LARGE holds. Processor time is that of the
-program, from its start to its end; memory is the most that it had, for a bag of SMALL and one of LARGE. Ends with 1
-if the program counts otherwise, reads fewer than 500,000 messages a second, or needs 4 MB more for the larger bag.
+SMALL and LARGE are folders of bags; MESSAGES is the number of ranges in each bag of LARGE. Processor time is that of
+the whole run of the program; memory is its peak, for a bag of SMALL and one of LARGE. The exit code is 1 if the count
+is wrong, fewer than 500,000 messages a second are read, or the larger bag needs 4 MB more.
 """
 
 import json
@@ -19,7 +19,7 @@ MOST_MORE_MB = 4.0
 
 
 def replay(program: str, bag: Path) -> tuple[int, float, float]:
-    """Return its count of messages, processor time in s, and memory in MB."""
+    """Return the program's count of messages, its processor time in s, and its memory in MB."""
     with tempfile.TemporaryFile() as said:
         command = [program, "replay", str(bag), "--t-delta-us", "500", "--json"]
         process = subprocess.Popen(command, stdout=said, stderr=subprocess.PIPE, text=True)
@@ -39,7 +39,7 @@ def main() -> int:
     wrong = []
     for bag in sorted(large.iterdir()):
         _, _, less_mb = replay(program, small / bag.name)
-        # The second time it is in the memory of the machine.
+        # From the second time on, the file is in the machine's memory.
         replay(program, bag)
         counted, seconds, mb = replay(program, bag)
         print(f"| {bag.name} | {counted} | {counted / seconds / 1e6:.1f} | {mb:.1f} | {less_mb:.1f} |", flush=True)

@@ -1,7 +1,7 @@
-"""Bags as ROS 1 itself writes and reads them: `/usr/bin/python3 ros1_bags.py PROGRAM`, after `apt install python3-rosbag python3-sensor-msgs`.
+"""Compare `eeruf logs` with ROS 1's own tools for bags: `/usr/bin/python3 ros1_bags.py PROGRAM`, after `apt install python3-rosbag python3-sensor-msgs`.
 
-What `rosbag` records, in each compression, `eeruf logs` must read, and the bags of the tests, which `rosbags` wrote, `rosbag` must read
-as `eeruf logs` does.
+`eeruf logs` must read what `rosbag` records, in each compression; and `rosbag` must read the bags of the tests, which `rosbags` wrote,
+like `eeruf logs`.
 """
 
 import collections
@@ -23,7 +23,7 @@ TEST_BAGS = ["ros1-none.bag", "ros1-bz2.bag"]
 
 
 def record(bag: rosbag.Bag) -> None:
-    """Record ranges of each kind, and a lidar that is no ring of sonars."""
+    """Record ranges of each kind, and a lidar that is not a ring of sonars."""
     for period in range(2000):
         at = genpy.Time.from_sec(1.6e9 + 0.06 * period)
         for sensor in range(SENSORS):

@@ -1,4 +1,4 @@
-"""Writes bags of every kind that `eeruf-logs` reads, by `rosbags` (PyPI), which shares nothing with it.
+"""Write bags of every kind that `eeruf-logs` reads, with `rosbags` (PyPI), which shares no code with it.
 
     python write_bags.py FOLDER [--topics N] [--messages N]
 
@@ -29,14 +29,14 @@ SPECIAL = {2: float("inf"), 3: float("-inf"), 4: float("nan")}
 
 
 def values(topic: int, message: int) -> tuple[int, int, str, float]:
-    """Stamp in seconds and nanoseconds, frame, range."""
+    """Return stamp in seconds and nanoseconds, frame and range."""
     stamp = 1_700_000_000 * 10**9 + message * 10**8
     value = SPECIAL.get(message, 1 + topic / 4 + message / 64)
     return stamp // 10**9, stamp % 10**9, f"sonar_{topic}", value
 
 
 def message_of(store, topic: int, number: int, *, ros1: bool, variance: bool):
-    """A Range in a type store."""
+    """Make a Range in a type store."""
     seconds, nanoseconds, frame, value = values(topic, number)
     types = store.types
     stamp = types["builtin_interfaces/msg/Time"](sec=seconds, nanosec=nanoseconds)
@@ -48,7 +48,7 @@ def message_of(store, topic: int, number: int, *, ros1: bool, variance: bool):
 
 
 def scan_of(store, number: int, *, ros1: bool):
-    """A LaserScan of four sonars."""
+    """Make a LaserScan of four sonars."""
     import numpy
 
     seconds, nanoseconds, _, _ = values(0, number)
@@ -71,7 +71,7 @@ def scan_of(store, number: int, *, ros1: bool):
 
 
 def write1(path: Path, compression, topics: int, messages: int) -> None:
-    """A ROS 1 bag."""
+    """Write a ROS 1 bag."""
     store = get_typestore(Stores.ROS1_NOETIC)
     definition = RANGE + HEADER.format("uint32 seq\n")
     path.unlink(missing_ok=True)
@@ -96,7 +96,7 @@ def write1(path: Path, compression, topics: int, messages: int) -> None:
 
 
 def write2(path: Path, release, plugin, mode, topics: int, messages: int, *, version: int = 9) -> None:
-    """A ROS 2 bag."""
+    """Write a ROS 2 bag."""
     store = get_typestore(release)
     variance = "variance" in store.types["sensor_msgs/msg/Range"].__dataclass_fields__
     shutil.rmtree(path, ignore_errors=True)

@@ -1,7 +1,7 @@
 //! Deaf sensors.
 //!
-//! Nothing in range is not deaf. A sensor is called deaf where the log rules the former out: others hear its sound, and
-//! sound takes as long back as there, so that it should hear theirs along the same paths.
+//! A sensor with nothing in range is not deaf. A sensor is called deaf if the log rules that out: others hear its
+//! sound, and sound takes equally long both ways, so it should hear theirs along the same paths.
 
 use super::sensors::Hearing;
 use super::statistics::ln_at_least;

@@ -1,4 +1,4 @@
-//! Diagnosis of a ring from its own log: which sensors fool each other, along paths of what length, since when, and how
+//! Diagnosis of a ring from its own log: which sensors fool each other, since when, along which paths, and how
 //! certainly.
 //!
 //! A path from sensor x to sensor y takes sound the same time whenever x fires. So if y's readings came along it, the
@@ -6,13 +6,13 @@
 //! other; for all other readings it moves with the firings. For each pair the times from x's firings to y's edges are
 //! laid over each other, and a time at which many of them meet is a path.
 //!
-//! Readings in which the two firings stand alike repeat each other and prove nothing. So what counts is *offsets*: how
-//! many different times between the two firings support a path. The probability that an edge falls within the tolerance
-//! of a predicted one by accident is small and follows from the readings; that as many offsets agree by accident then
-//! has a binomial probability. It is multiplied by the number of places at which a path was looked for (Bonferroni),
-//! and a path counts as found if fewer than [`Settings::accidents`] such paths are expected in the whole log by
-//! accident. That takes many phases, or lags that move: with two phases there are two offsets, and no pair can be
-//! named.
+//! Readings with the same time between the two firings repeat each other and prove nothing. So *offsets* count: the
+//! number of different times between the two firings that support a path. The probability that an edge falls within the
+//! tolerance of a predicted one by accident is small and follows from the readings; the probability that this many
+//! offsets agree by accident is then binomial. It is multiplied by the number of places at which a path was looked for
+//! (Bonferroni), and a path counts as found if fewer than [`Settings::accidents`] such paths are expected in the whole
+//! log by accident. That takes many phases, or lags that move: with two phases there are two offsets, and no pair can
+//! be named.
 //!
 //! While the robot drives, these times change. A path is then a line over a second, and readings are named one by one
 //! from the readings around them: `moving`.
@@ -44,9 +44,9 @@ pub use timing::{Timing, TimingError, timing};
 /// Settings of the search for paths.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Time for which sound is followed, in microseconds.
+    /// The longest travel time of sound to consider, in microseconds.
     pub max_travel_us: u32,
-    /// Largest difference between a reading and what a path predicts, in microseconds: about four times the jitter.
+    /// Largest difference between a reading and its path's prediction, in microseconds: about four times the jitter.
     pub tolerance_us: u32,
     /// Expected number of paths found by accident in the whole log.
     pub accidents: f64,
@@ -55,13 +55,13 @@ pub struct Settings {
 }
 
 impl Default for Settings {
-    /// 80 ms, 75 us, one path in a hundred logs, 99 %.
+    /// Settings of 80 ms, 75 us, one path in a hundred logs, and 99 %.
     fn default() -> Self {
         Self { max_travel_us: 80_000, tolerance_us: 75, accidents: 0.01, sure: 0.99 }
     }
 }
 
-/// A function that is called sometimes; if it returns `false`, work ends with the results so far.
+/// A function that is called from time to time; if it returns `false`, work ends with the results so far.
 pub type KeepGoing<'a> = &'a dyn Fn() -> bool;
 
 impl Settings {
@@ -82,21 +82,21 @@ impl Settings {
         changes.retain(|us| *us < OTHER_US);
         changes.sort_unstable();
         let scatter_us = changes.get(changes.len() / 4).map_or(0.0, |&us| us as f64 / QUARTILE);
-        // The quartile of a few, or of sound that moves from firing to firing, is no scatter of one path.
+        // The quartile of a few changes, or of sound that moves from firing to firing, is not the scatter of one path.
         let is_known = changes.len() >= 100 && 3.0 * scatter_us > f64::from(usual.tolerance_us);
         let tolerance_us = if is_known { (4.0 * scatter_us) as u32 } else { usual.tolerance_us };
         Self { tolerance_us, ..usual }
     }
 }
 
-/// A path that was found.
+/// A path found in a log.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FoundPath {
     /// The sensor that sends, from 0.
     pub sender: u8,
-    /// Travel time of the sound, in microseconds; for a path that moves, at the middle of its times.
+    /// The sensor that hears the sound, from 0.
     pub receiver: u8,
-    /// Travel time of the sound, in microseconds; of a path that moves, at the middle of its times.
+    /// Travel time of the sound, in microseconds; for a path that moves, at the middle of its times.
     pub travel_us: f64,
     /// Standard error of the travel time.
     pub travel_error_us: f64,
@@ -108,7 +108,7 @@ pub struct FoundPath {
     /// Number of paths with as much support that are expected by accident in the whole log. For a path that moves, the
     /// probability that the surest of its readings did not come along it.
     pub accidents: f64,
-    /// Readings along the path.
+    /// Number of readings along the path.
     pub readings: u32,
     /// The share of readings that heard the path, among those in which nothing earlier hid it.
     pub heard: f64,
@@ -129,7 +129,7 @@ pub struct Diagnosis {
     pub hearing: Vec<Hearing>,
     /// Deaf sensors.
     pub faults: Vec<Finding>,
-    /// True if the robot moved: odometry says so, or early ranges are gone at the end.
+    /// True if the robot moved: odometry says so, or early ranges do not recur at the end.
     pub moved: bool,
     /// The largest number of offsets at which a reading could come from another sensor's firing, over all pairs.
     pub most_offsets: u32,

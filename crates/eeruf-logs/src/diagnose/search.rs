@@ -11,7 +11,7 @@ use super::{FoundPath, KeepGoing, Settings};
 const NEAR_US: i64 = 2000;
 /// Least number of a receiver's firings for finding a path.
 const FEWEST: usize = 20;
-/// The most paths to one receiver.
+/// The largest number of paths to one receiver.
 const MOST_PATHS: usize = 60;
 /// Shares of unhidden readings in which a path must be heard at an offset for support: for a loud path, and for a faint
 /// one.
@@ -78,7 +78,7 @@ pub(super) fn paths_to(
     let mut search = Search { receiver, timeline, heard, explained, open: Vec::new(), all, silent, tolerance };
     let others = (0..timeline.sensors() as u8).filter(|&sensor| sensor != receiver).map(Source::Other);
     let sources: Vec<_> = others.chain([Source::OwnNow, Source::OwnBefore]).collect();
-    // At how many places a path is looked for, in the whole log.
+    // Number of places at which a path is looked for, in the whole log.
     let places = f64::from(settings.max_travel_us) / f64::from(2 * settings.tolerance_us.max(1));
     let ln_places = (places * sources.len() as f64 * timeline.sensors() as f64).ln();
     let mut found = Vec::new();
@@ -111,7 +111,7 @@ impl Search<'_> {
     fn accident(&self, echo_us: i64) -> f64 {
         let below = |limit: i64| self.open.partition_point(|&open| open < limit);
         let near = below(echo_us + NEAR_US) - below(echo_us - NEAR_US);
-        // Of these, too, something else was heard that was found: they are no accidents.
+        // `all` includes readings that found paths explain: they too could have heard something near.
         let later = self.all.len() - self.all.partition_point(|&echo| echo < echo_us - NEAR_US) + self.silent;
         let share = (near as f64 + 1.0) / (later as f64 + 1.0);
         (share * self.tolerance as f64 / NEAR_US as f64).min(0.9)
@@ -164,7 +164,7 @@ impl Search<'_> {
         let mut places = Vec::new();
         let mut offsets = HashMap::<i64, u32>::new();
         let mut from = 0;
-        // The receiver's own echo of this firing stands at no offset: its readings count.
+        // The receiver's own echo of this firing has no offset: its readings are counted instead.
         let bin = |travel: &Travel| match source {
             Source::OwnNow => travel.reading as i64,
             _ => travel.offset_us.div_euclid(self.tolerance.max(1)),
@@ -199,7 +199,7 @@ impl Search<'_> {
                 }
                 let off = heard.echo_us.map(|echo_us| echo_us - predicted);
                 let is_heard = match off {
-                    // Something earlier hid it, or what came together with it is explained.
+                    // An earlier echo hid it, or an edge at the same time is already explained.
                     Some(off) if off < -self.tolerance => continue,
                     Some(off) if off <= self.tolerance && self.explained[reading] => continue,
                     off => off.is_some_and(|off| off <= self.tolerance),
@@ -215,8 +215,8 @@ impl Search<'_> {
                 Source::OwnNow => self.own_offsets(&trials, share),
                 _ => self.by_offset(&mut trials, share),
             };
-            // That the mean share of accidents at one offset reaches a multiple of what is expected is no likelier than
-            // one in that multiple (Markov). Two thresholds are two chances.
+            // The mean share of accidents at one offset exceeds its expected value by a factor with a probability of at
+            // most one in that factor (Markov). Two thresholds are two chances.
             let tries = (SUPPORTS.len() as f64).ln();
             let ln_accident = (ln_at_least(offsets.0, offsets.1, (accident / share).min(1.0)) + tries).min(0.0);
             if ln_accident < best.1 || best.0 == (0, 0) {
@@ -286,7 +286,7 @@ impl Search<'_> {
         let mut off: Vec<_> = travels.iter().map(|travel| (travel - middle).abs()).collect();
         // The median of the distances of a normal distribution is 0.6745 of its standard deviation.
         let scatter_us = (median(&mut off) / 0.6745).max(1.0);
-        // Places in the log, of which `diagnose` makes periods.
+        // Places in the log, which `diagnose` converts to periods.
         let mut periods = (u32::MAX, 0);
         for &reading in &support.matched {
             self.explained[reading] = true;

@@ -17,7 +17,7 @@ impl Share {
         self.of += 1;
     }
 
-    /// The share as a number; 0 of nothing.
+    /// The share as a number; 0 without trials.
     pub fn value(&self) -> f64 {
         f64::from(self.count) / f64::from(self.of.max(1))
     }

@@ -27,7 +27,7 @@ pub(crate) fn ln_at_least(k: u32, n: u32, p: f64) -> f64 {
     (largest + terms.iter().map(|term| (term - largest).exp()).sum::<f64>().ln()).min(0.0)
 }
 
-/// The median; 0 of nothing.
+/// The median; 0 without values.
 pub(crate) fn median(values: &mut [f64]) -> f64 {
     if values.is_empty() {
         return 0.0;

@@ -14,7 +14,7 @@ pub(super) struct Heard {
     pub(super) firing: usize,
     pub(super) fired_us: i64,
     pub(super) phase: u8,
-    /// From firing to edge; `None` without one.
+    /// Time from firing to edge; `None` without an edge.
     pub(super) echo_us: Option<i64>,
 }
 
@@ -82,13 +82,13 @@ impl Timeline {
 
     /// Returns true if readings of the first third of the log do not recur in the last third: among pairs of a sensor's
     /// firings, one from each third, at the same time after another sensor's firing, hardly any have the same echo. If
-    /// the ring stands and people walk before it, more than a quarter have.
+    /// the ring stands and people walk in front of it, more than a quarter do.
     pub(super) fn moved(&self) -> bool {
         /// Difference of echoes, in microseconds, below which they are of one object at rest.
         const SAME_US: i64 = 75;
         const COMES_BACK: f64 = 0.2;
         const FEWEST: u32 = 20;
-        // Where gaps are random a ring never fires alike, and its sensors mostly hear their own echoes.
+        // With random gaps a ring never fires the same way twice, and its sensors mostly hear their own echoes.
         let by_others = self.comes_back(SAME_US, true);
         let comes_back = if by_others.of < FEWEST { self.comes_back(SAME_US, false) } else { by_others };
         comes_back.of >= FEWEST && comes_back.value() < COMES_BACK

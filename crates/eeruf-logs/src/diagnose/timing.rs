@@ -108,7 +108,7 @@ pub fn timing(
     }
     let jitter_us = (off.iter().map(|off| off * off).sum::<f64>() / (n - 2.0).max(1.0)).sqrt();
     off.sort_by(f64::total_cmp);
-    // From the earliest, as lateness goes one way.
+    // Measured from the earliest firings, since firings are only ever late.
     let earliest = off[off.len() / 100];
     let late_99_us = off[off.len() - 1 - off.len() / 100] - earliest;
     Ok(Timing {

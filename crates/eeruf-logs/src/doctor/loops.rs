@@ -19,7 +19,7 @@ pub(crate) struct Looped {
 
 /// Number of rounds below which nothing is concluded.
 const FEWEST: usize = 60;
-/// Least share of rounds in which a sum is constant, and least ratio to that with readings of other rounds.
+/// Least share of rounds with a constant sum, and its least ratio to that share for sums over different rounds.
 const STAYS: f64 = 0.3;
 const BY_CHANCE: f64 = 2.0;
 /// Least movement of the readings meanwhile, in half widths of the tolerance for equal sums.
@@ -43,7 +43,7 @@ fn crowd(mut values: Vec<f64>, width: f64) -> (usize, f64) {
     most
 }
 
-/// Pairs of sensors of which one reads the other's sound, at most one for each pair; `rows` are all readings in order.
+/// Pairs of sensors in which one reads the other's sound, at most one for each pair; `rows` are all readings in order.
 pub(crate) fn looped(rows: &[(usize, f64)], scatter: &[Scatter]) -> Vec<Looped> {
     let sensors = scatter.len();
     let rows = &rows[..rows.len().min(MOST_ROWS)];

@@ -203,7 +203,7 @@ impl Doctor {
         found
     }
 
-    /// Rounds in which another sensor did not fire act as a pause test. Returns the sensors that pass it with all
+    /// Uses rounds in which another sensor did not fire as a pause test, and returns the sensors that pass it with all
     /// others.
     fn silent_rounds<'n>(
         &self,
@@ -219,7 +219,7 @@ impl Doctor {
         if sensors > MOST_SENSORS {
             return vec![];
         }
-        // By receiver and other sensor: has that one fired at its time, or else since the receiver's reading before?
+        // By receiver and other sensor: did the other fire with it, or without fail since the receiver's last reading?
         let mut fired = vec![vec![]; sensors * sensors];
         let mut since = vec![false; sensors * sensors];
         let mut begin = 0;
@@ -240,7 +240,7 @@ impl Doctor {
             for other in (0..sensors).filter(|&other| other != receiver) {
                 let classes = &fired[receiver * sensors + other];
                 let with = classes.iter().filter(|&&fired| fired == Some(true)).count();
-                // Of two that only change places in the round, each fires as often as the other.
+                // Two sensors that only change places in the round fire equally often.
                 let is_seldomer = self.sensors[other].at_us.len() * 50 <= classes.len() * 49;
                 if with * 50 < classes.len() || with * 50 > classes.len() * 49 || !is_seldomer {
                     cleared[receiver] = false;

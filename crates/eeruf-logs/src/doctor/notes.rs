@@ -6,7 +6,7 @@ use crate::symptom::Symptom;
 /// Number of readings below which nothing is concluded.
 const FEWEST: usize = 30;
 
-/// Returns true if the echoes never change by more than the scatter of sound in still air.
+/// Returns the evidence that the echoes never change by more than the scatter of sound in still air, if so.
 fn never_changes(echoes: &[f64]) -> Option<String> {
     const MANY: usize = 15;
     const STILL_US: f64 = 3.0;
@@ -55,7 +55,7 @@ impl Series {
             .or_else(|| self.faded().map(of(Symptom::Jumps)))
     }
 
-    /// Returns true if nearly all readings are far from the one before and from every recurring value.
+    /// Returns the evidence that nearly all readings are far from the previous one and from every recurring value.
     fn scattered(&self, echoes: &[f64]) -> Option<String> {
         let near = echoes.windows(2).filter(|two| (two[1] - two[0]).abs() < 500.0).count();
         let steady = self.steady().into_iter().filter(Steady::is_still);
@@ -66,8 +66,8 @@ impl Series {
         })
     }
 
-    /// Returns true for two steady values whose difference is the sensor's own period: the second is the echo of the
-    /// firing before.
+    /// Returns the evidence for two steady values that differ by the sensor's own period: the second is the echo of
+    /// the previous firing.
     fn stale(&self) -> Option<String> {
         let mut periods: Vec<f64> = self.at_us.windows(2).map(|two| two[1] - two[0]).filter(|us| *us > 0.0).collect();
         periods.sort_by(f64::total_cmp);
@@ -76,7 +76,7 @@ impl Series {
         if spread < 200.0 {
             return None;
         }
-        // A reading that fits the firing before moves against the time between the two.
+        // A reading that fits the previous firing moves against the time between the two.
         let (mut fits, mut stays, mut number) = (0, 0, 0);
         for k in 2..self.echo_us.len() {
             let change = self.echo_us[k] - self.echo_us[k - 1];
@@ -97,7 +97,7 @@ impl Series {
         })
     }
 
-    /// Returns true for two steady values, each with at least a tenth of the readings.
+    /// Returns the evidence for two steady values, each with at least a tenth of the readings.
     fn faded(&self) -> Option<String> {
         if self.moves() {
             return None;

@@ -9,7 +9,7 @@ const NEXT_US: f64 = 100.0;
 const CHANGES_US: [f64; 5] = [150.0, 500.0, 1500.0, 3000.0, 7000.0];
 /// Largest change of an echo relative to the time passed, for a robot at up to 3 m/s.
 const DRIVING: f64 = 0.018;
-/// Width of values above which they are moving.
+/// Spread of values above which they count as moving.
 const STEADY_US: f64 = 600.0;
 
 /// Firing times of a sensor, and its echo times; both in microseconds, NaN without echo.
@@ -81,7 +81,7 @@ impl Series {
         values
     }
 
-    /// Returns true if the object before the sensor comes nearer or moves away.
+    /// Returns true if the object in front of the sensor comes nearer or moves away.
     pub(crate) fn moves(&self) -> bool {
         let values = self.steady();
         let all: usize = values.iter().map(|value| value.count).sum();
@@ -185,7 +185,7 @@ impl Series {
         Some((lags.iter().map(|lag| (!lag.is_nan()).then_some(*lag > threshold)).collect(), gap))
     }
 
-    /// Pairs of consecutive readings of different classes: the difference of their echoes, or which of the two has
+    /// Compares consecutive readings of different classes: the difference of their echoes, or which of the two has
     /// none. Own echoes change equally often in both directions. Changes that continue at the same rate to the next
     /// reading but one are motion and ignored, as are changes within four times the scatter.
     pub(crate) fn changes(&self, classes: &[Option<bool>], scatter: Scatter) -> Changes {

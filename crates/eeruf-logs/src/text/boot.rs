@@ -61,7 +61,7 @@ fn is_of_esp_idf(text: &str) -> bool {
     said.is_some_and(|(tag, _)| TAGS.split(' ').any(|own| tag == own || tag.starts_with("boot.esp32")))
 }
 
-/// Returns true for a line of which half is not text, such as one from another baud rate.
+/// Returns true for a line at least half of which is not text, such as one from another baud rate.
 pub(super) fn is_noise(line: &str) -> bool {
     let is_odd = |letter: &char| *letter == '\u{fffd}' || (letter.is_control() && *letter != '\t');
     let odd = line.chars().filter(is_odd).count();

@@ -39,7 +39,7 @@ pub(super) struct Column {
     pub(super) texts: usize,
     pub(super) calendars: usize,
     pub(super) distinct: BTreeMap<String, usize>,
-    /// Number of rows whose text differs from that of the row before.
+    /// Number of rows whose text differs from that of the previous row.
     changes: usize,
     last: String,
     pub(super) has_unit_in_cells: Option<RangeUnit>,
@@ -47,7 +47,7 @@ pub(super) struct Column {
     /// True if the unit below the column's name is a unit of length, false for another unit.
     pub(super) has_length: bool,
     pub(super) has_other_unit: bool,
-    /// A unit in which every second cell repeats the range of the cell before.
+    /// A unit in which every second cell repeats the range of the previous cell.
     pub(super) repeated_unit: Option<RangeUnit>,
 }
 
@@ -100,7 +100,7 @@ impl Column {
     pub(super) fn is_epoch(&self) -> bool {
         let is_in = |number: &f64| [1.0, 1e3, 1e6, 1e9].iter().any(|unit| (1e9..2.2e9).contains(&(number / unit)));
         let falls = self.numbers.windows(2).filter(|two| two[1] < two[0]).count();
-        // A damaged line is no reason.
+        // A few damaged lines do not matter.
         let count = self.numbers.iter().filter(|number| is_in(number)).count();
         count > 0 && count * 10 >= 9 * self.numbers.len() && falls * 10 <= self.numbers.len()
     }
@@ -157,7 +157,7 @@ impl Column {
 
     pub(super) fn is_rising(&self) -> bool {
         let others = self.no_echoes + self.empties + self.texts + self.calendars;
-        // A damaged line is no reason.
+        // A few damaged lines do not matter.
         let rises = self.numbers.windows(2).filter(|two| two[0] < two[1]).count();
         let rows = self.numbers.len();
         rows >= 3 && others * 10 <= rows && (rows - 1 - rises) * 20 < rows.max(20)

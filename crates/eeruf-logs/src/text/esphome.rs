@@ -37,7 +37,7 @@ impl EspHome {
         let may_be_cut =
             ["Got distance", "Sending state", "Distance measurement"].iter().any(|part| line.contains(part));
         let Some((before, said)) = split(line) else {
-            // Lines of the program on the desk.
+            // Lines of ESPHome's program on the computer.
             let is_other = ["INFO ", "WARNING ", "ERROR "].iter().any(|level| line.trim_start().starts_with(level));
             let has_digit = line.contains(|letter: char| letter.is_ascii_digit());
             return if may_be_cut || (has_digit && !is_other) { Misfit } else { Nothing };

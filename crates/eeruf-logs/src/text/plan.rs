@@ -66,7 +66,7 @@ pub(super) struct Plan {
     pub(super) unit: Option<usize>,
     /// The column with the medium of a row's sensor, and the number that means ultrasound.
     pub(super) medium: Option<(usize, f64)>,
-    /// Columns that say if ranges are valid.
+    /// Columns that say whether ranges are valid.
     pub(super) validity: Vec<Validity>,
     /// Lines before the header, which are repeated after a reset.
     pub(super) greetings: BTreeSet<String>,
@@ -76,7 +76,7 @@ pub(super) struct Plan {
     pub(super) usual_names: Option<Vec<String>>,
     pub(super) form: String,
     pub(super) guesses: Vec<Guess>,
-    /// A warning about ranges that no ultrasonic sensor has.
+    /// A warning about ranges that no ultrasonic sensor measures.
     pub(super) implausible: Option<String>,
     pub(super) skipped: Vec<Skipped>,
 }

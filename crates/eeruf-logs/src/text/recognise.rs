@@ -262,7 +262,7 @@ impl Plan {
         for (column, (unit, is_other)) in self.columns.iter_mut().zip(units.iter().zip(&other_units)) {
             (column.has_length, column.has_other_unit) = (unit.is_some(), *is_other);
         }
-        // `# t in s, d in mm`; `# unit: mm` is of all.
+        // `# t in s, d in mm`; `# unit: mm` is for all columns.
         let comments = sample.iter().filter_map(|line| line.text.trim().strip_prefix(['#', '%']));
         for said in comments.flat_map(|text| text.split([',', ';'])) {
             let Some((name, unit)) = said.split_once(" in ").or_else(|| said.split_once([':', '='])) else { continue };
@@ -372,7 +372,7 @@ impl Plan {
         let unit = self.columns.iter().position(unit_of_row);
         // Without a header a unit stands behind its number: `Starting in 3` has none.
         self.unit = unit.filter(|&at| has_header || first.is_some_and(|first| first < at));
-        // A number before a percent sign, or a unit of anything else, is no length.
+        // A number before a percent sign, or before another unit, is not a length.
         for index in 1..self.columns.len() {
             let is_foreign = self.columns[index].distinct.keys().all(|text| names::is_foreign_unit(text));
             self.columns[index - 1].has_other_unit |=
@@ -425,9 +425,9 @@ impl Plan {
             self.refuse_unreadable(file, lines)?;
         }
         if ranges.is_empty() && !has_header && lines.len() >= 8 {
-            // Where nothing has a name, what never changes or never is an echo is no range.
+            // Without any names, a column that never changes or has no echoes is not a range.
             let is_idle = |column: &Column| column.distinct.len() == 1 || column.median().is_nan();
-            // Nor are numbers beside words of which none says that they are.
+            // Numbers beside words are ranges only if a word says so.
             let is_said =
                 |column: &&Column| column.texts > 0 && column.numbers.is_empty() && column.distinct.len() == 1;
             let is_known = |column: &Column| {
@@ -448,7 +448,7 @@ impl Plan {
             }
             self.without_derived();
         }
-        // Bytes, as tools for buses print them, are no table.
+        // Bytes, as tools for buses print them, are not a table.
         let bytes: Vec<_> = self.columns.iter().filter_map(Column::bytes).collect();
         let odd = bytes.iter().filter(|&&is_odd| is_odd).count();
         if !has_header && ranges.is_empty() && bytes.len() >= 4 && odd >= 2 {
@@ -501,7 +501,7 @@ impl Plan {
                 format!("column {}: `{text}`; expected a number, with or without a unit of lengths", column.name);
             return Err(FileError::new(file, message));
         }
-        // Each of several words before its values.
+        // Several words, each on a line before its values.
         if self.shape == Shape::Separated(Separator::None) {
             let mut words: BTreeMap<&str, usize> = BTreeMap::new();
             let is_word = |text: &str| {
@@ -523,7 +523,7 @@ impl Plan {
         Ok(())
     }
 
-    /// Gives the unit in the cells of `e2` to `e0` and `e1`, where it is written once a line.
+    /// Copies the unit in the cells of `e2` to `e0` and `e1`, if it is written once a line.
     fn shared_units(&mut self) {
         let stem = |name: &str| name.trim_end_matches(|letter: char| letter.is_ascii_digit()).to_owned();
         let is_one = |column: &&Column| column.role == Role::Range && column.needs_unit();
@@ -538,7 +538,7 @@ impl Plan {
 
     /// Removes columns that neither a name nor a unit marks as ranges, if others are marked.
     fn named_ranges_alone(&mut self) {
-        // Letters are places where two and more are.
+        // Letters are names of places if there are two or more.
         let is_letter = |column: &Column| column.role == Role::Range && names::is_letter_of_place(&column.name);
         let is_single = |column: &&Column| column.role == Role::Range && column.name.chars().count() == 1;
         let singles: Vec<_> = self.columns.iter().filter(is_single).collect();
@@ -585,7 +585,7 @@ impl Plan {
         }
     }
 
-    /// Columns that name the sensor of a row.
+    /// Number of columns that name the sensor of a row.
     fn sensor_names(&self) -> usize {
         self.columns.iter().filter(|column| column.role == Role::Sensor && column.distinct.len() > 1).count()
     }
@@ -627,7 +627,7 @@ impl Plan {
         column.is_rising() && column.steps().iter().all(|&step| (step - 1.0).abs() < 1e-9) && column.numbers[0] < 2.0
     }
 
-    /// The first of several unnamed columns whose values increase by one step: an angle, a loop's number.
+    /// Returns true for the first of several unnamed columns if its values increase evenly: an angle, a loop's number.
     fn is_sweep(&self, index: usize) -> bool {
         let is_named = self.has_names || !matches!(self.shape, Shape::Separated(_));
         let ([], [column, _, ..]) = self.columns.split_at(index) else { return false };

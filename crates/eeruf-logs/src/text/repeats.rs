@@ -195,7 +195,7 @@ impl Series {
         }
         let pair = |(a, b): (&Cell, &Cell)| match (a.1, b.1) {
             (Some(a), Some(b)) => Some(Some((a, b))),
-            // Nearer than the coarser unit tells.
+            // Nearer than the coarser unit can show.
             (None, Some(near)) if near < 3.0 * other.resolution => None,
             (Some(near), None) if near < 3.0 * self.resolution => None,
             (None, None) => None,
@@ -210,7 +210,7 @@ impl Series {
         let distinct = self.distinct.min(other.distinct);
         let differ = pairs.iter().filter(|pair| pair.is_none_or(|(a, b)| a != b)).count();
         if self.unit == other.unit && differ * 100 <= pairs.len() {
-            // Two sensors before one wall may agree for a while.
+            // Two sensors that face one wall may agree for a while.
             let [one, other] = columns.map(|column| names::stem(&column.name));
             return (one == other && pairs.len() >= 4 && distinct >= 3) || (pairs.len() >= 20 && distinct >= 8);
         }
@@ -246,7 +246,7 @@ impl Series {
         (fit > 1 && fit * 20 >= pairs.len() * 19 && least > 0.0).then_some(most / least)
     }
 
-    /// Returns true if it is metric and the other is not, or if it is finer in the same measure.
+    /// Returns true if this column is metric and the other is not, or if it is finer in the same measure.
     fn is_better_than(&self, other: &Self) -> bool {
         let is_metric = |series: &Self| !matches!(series.unit, Some(RangeUnit::In | RangeUnit::Ft));
         let share = |series: &Self| {

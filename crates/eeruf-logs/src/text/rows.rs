@@ -33,7 +33,7 @@ pub(super) struct Rows<'a, 's, 'e> {
     /// Midnights since the log began.
     midnights: u64,
     latest_ns: u64,
-    /// Nanoseconds lost by wraps of a 32-bit counter, and its time in the row before.
+    /// Nanoseconds lost by wraps of a 32-bit counter, and its time in the previous row.
     wrapped_ns: u64,
     counted_ns: u64,
 }
@@ -139,7 +139,7 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
                 while cells.len() > width && cells.last().is_some_and(String::is_empty) {
                     cells.pop();
                 }
-                // Lines that a reset repeats, and the end of a database's print, as `(2 rows)`.
+                // Lines that a reset repeats, and the end of a database's output, such as `(2 rows)`.
                 let is_end = || {
                     text.starts_with('(') && text.ends_with(" rows)")
                         || cells.len() == 1 && text.contains(" rows in set")

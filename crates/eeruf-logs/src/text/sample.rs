@@ -37,7 +37,7 @@ pub(super) fn strip(sample: &[Line]) -> Stripped<'_> {
         .collect();
     let rules = lines.iter().filter(|line| is_rule(line.1)).count();
     let values = lines.iter().filter(|line| !is_rule(line.1) && value::range(line.1, true).is_some()).count();
-    // Where a line is one value, dashes part messages only if they follow each.
+    // If a line is one value, dashes separate messages only if they follow each of them.
     let has_rules = rules > 0 && (values * 2 < lines.len() - rules || rules * 2 + 1 >= lines.len());
     let lines: Vec<_> = lines.into_iter().filter(|line| !(has_rules && is_rule(line.1))).collect();
     let with = lines.iter().filter(|(_, text)| value::prefix(text).is_some_and(|(_, rest)| !rest.is_empty())).count();
@@ -101,7 +101,7 @@ pub(super) fn shape_of(lines: &[(u64, &str)]) -> (Shape, bool) {
         let words = cells().filter(|text| !is_clean(text) && is_word(text)).count() as f64;
         let share = usual.len() as f64 / total as f64;
         let score = share * (clean + 0.5 * words) / cells().count().max(1) as f64;
-        // A table that some lines do not fit is one all the same.
+        // A table is still a table if some lines do not fit.
         if score > best.0 + 1e-9 {
             best = (score, separator, comma);
         }

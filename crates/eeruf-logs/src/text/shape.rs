@@ -112,7 +112,7 @@ pub(crate) fn separated(line: &str, separator: Separator) -> Option<Vec<String>>
             _ => vec![line.trim().to_owned()],
         });
     };
-    // A list in brackets behind a number is more cells.
+    // A list in brackets after a number has more cells.
     let opens = |(at, open): &(usize, &str)| {
         let is_digit = |letter: Option<char>| letter.is_some_and(|letter| letter.is_ascii_digit());
         letter == ',' && is_digit(line[..*at].chars().last()) && is_digit(line[at + open.len()..].chars().next())
@@ -162,7 +162,7 @@ pub(crate) fn keyed(line: &str) -> Option<Vec<(String, String)>> {
     let (mut rest, mut pairs, mut heading) = (dict.unwrap_or(line), vec![], "");
     let mut unit_at_end = None;
     while let Some(at) = rest.find([':', '=']) {
-        // Behind it a decoded message begins.
+        // A decoded message begins after it.
         if let Some(after) = rest[at..].strip_prefix("::") {
             rest = after;
             continue;
@@ -227,7 +227,7 @@ pub(crate) fn keyed(line: &str) -> Option<Vec<(String, String)>> {
         let word = &spaced[..spaced.find(BETWEEN).unwrap_or(spaced.len())];
         let follows = spaced[word.len()..].trim_start().chars().next();
         let is_key = word.contains([':', '=']) || follows.is_some_and(|letter| letter == ':' || letter == '=');
-        // Of another quantity, as in `21.5 C`.
+        // The unit of another quantity, as in `21.5 C`.
         let is_unit = value::unit(word).is_some() || word.starts_with('%') || (1..=4).contains(&word.len());
         let begins = word.starts_with(|letter: char| letter.is_alphabetic() || "%\"\u{b0}\u{b5}".contains(letter));
         let is_unit = is_unit && begins && !word.contains(|letter: char| letter.is_ascii_digit() || letter == '(');
@@ -235,7 +235,7 @@ pub(crate) fn keyed(line: &str) -> Option<Vec<(String, String)>> {
             text = format!("{text} {}", word.trim_end_matches([')', ']']));
             rest = &spaced[word.len()..];
         }
-        // Of whole numbers in line protocol.
+        // The suffix of whole numbers in line protocol.
         if let Some(digits) = text.strip_suffix('i').filter(|digits| is_equal && digits.parse::<i64>().is_ok()) {
             text.truncate(digits.len());
         }
@@ -262,7 +262,7 @@ pub(crate) fn keyed(line: &str) -> Option<Vec<(String, String)>> {
         let of = pairs.iter_mut().filter(|(name, text)| value::number(text, true).is_some() && is_length(name));
         of.for_each(|(_, text)| text.extend([" ", unit]));
     }
-    // A time series' instant behind the values.
+    // A time series' instant after the values.
     if let Some(instant) = Some(rest.trim()).filter(|rest| is_instant(rest) && !pairs.is_empty()) {
         pairs.push(("timestamp".to_owned(), instant.to_owned()));
         rest = "";
@@ -288,7 +288,7 @@ fn name_in(before: &str, is_equal: bool) -> &str {
     let mut name = before;
     for open in ['(', '[', '{'] {
         let close = if open == '(' { ')' } else { (open as u8 + 2) as char };
-        // Brackets that are open still are around the name.
+        // Brackets that are still open surround the name.
         if let Some(at) = name.rfind(open).filter(|&at| !name[at..].contains(close)) {
             name = &name[at + 1..];
         }
@@ -332,7 +332,7 @@ fn glued(line: &str) -> Option<Vec<(String, String)>> {
 
 /// The values of a JSON object by path, or of an array by place; `None` for anything else.
 fn json(text: &str) -> Option<Vec<(String, String)>> {
-    // Python writes what JSON has no number for.
+    // Python writes numbers that JSON does not have.
     let plain = || text.replace("-Infinity", "null").replace("Infinity", "null").replace("NaN", "null");
     let found = serde_json::from_str(text.trim()).or_else(|_| serde_json::from_str(plain().trim()));
     let found: Json = found.ok()?;

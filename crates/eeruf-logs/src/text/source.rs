@@ -106,7 +106,7 @@ impl<'a> Form<'a> {
             [0xff, 0xfe, ..] => (2, Some(false)),
             [0xfe, 0xff, ..] => (2, Some(true)),
             [0xef, 0xbb, 0xbf, ..] => (3, None),
-            // Text of the first kind has its zeroes at odd places.
+            // Little-endian text has its zeroes at odd places.
             [one, 0, two, 0, ..] if *one != 0 && *two != 0 => (0, Some(false)),
             [0, one, 0, two, ..] if *one != 0 && *two != 0 => (0, Some(true)),
             _ => (0, None),
@@ -126,7 +126,7 @@ impl<'a> Form<'a> {
         if start.starts_with("FMT,") {
             return Ok(Self::DataFlash(Lines::new(input)));
         }
-        // Keyword lines, as `#SONAR 24: 53 cm`.
+        // Keyword lines, such as `#SONAR 24: 53 cm`.
         let has_hashes = start
             .lines()
             .filter(|line| !line.trim().is_empty())

@@ -1,15 +1,15 @@
-//! Columns that say if the range beside them was measured.
+//! Columns that say whether the range beside them was measured.
 
 use super::column::{Column, Role};
 use super::plan::{Plan, Says, Validity, guess};
 use crate::names;
 use crate::value;
 
-/// Words behind a reading that say whether it is one.
+/// Words after a reading that say that it is valid.
 const GOOD: [&str; 3] = ["valid", "ok", "good"];
 const BAD: [&str; 5] = ["invalid", "nok", "bad", "fail", "failed"];
 
-/// Returns true if each word says whether a reading is one, and one that it is.
+/// Returns true if each word says whether a reading is valid, and at least one says that it is.
 pub(super) fn are_verdicts<'a>(mut words: impl Iterator<Item = &'a String> + Clone) -> bool {
     let is_in = |list: &[&str], word: &str| list.contains(&word.to_lowercase().as_str());
     words.clone().any(|word| is_in(&GOOD, word)) && words.all(|word| is_in(&GOOD, word) || is_in(&BAD, word))
@@ -71,7 +71,7 @@ fn meaning(column: &Column) -> Option<(Says, &'static str)> {
 }
 
 impl Plan {
-    /// Finds the columns that say if ranges are valid.
+    /// Finds the columns that say whether ranges are valid.
     pub(super) fn validities(&mut self) {
         let ranges: Vec<usize> =
             (0..self.columns.len()).filter(|&index| self.columns[index].role == Role::Range).collect();

@@ -6,7 +6,7 @@ use eeruf_logs::{Echo, LogReading, Options, Report};
 
 use crate::{BAGS, bag, read};
 
-/// Contents that `write_bags.py` put into message `m` of topic `n`.
+/// The contents of message `m` of topic `n` that `write_bags.py` wrote.
 fn expected(topic: usize, message: usize) -> Echo {
     match message {
         2 => Echo::Nothing,
@@ -35,7 +35,7 @@ fn holds(name: &str, report: &Report, readings: &[LogReading], messages: usize, 
     }
 }
 
-// Bags that rosbags wrote give the readings that went in with and without variance.
+// Bags written by rosbags give the original readings, with and without variance.
 #[test]
 fn rosbags_files_give_their_readings() {
     let folder = tempfile::tempdir().unwrap();
@@ -63,7 +63,7 @@ fn message_length_says_if_it_has_a_variance() {
     }
 }
 
-// A schema that the messages do not fit is said and nothing is guessed.
+// A schema that does not fit the messages is reported, and nothing is guessed.
 #[test]
 fn schema_that_does_not_fit_is_reported() {
     let folder = tempfile::tempdir().unwrap();
@@ -94,7 +94,7 @@ fn each_beam_of_a_sonar_scan_is_a_sensor() {
     }
 }
 
-// The files of a bag in several are read in order also without its metadata.
+// The files of a split bag are read in order, even without its metadata.
 #[test]
 fn bag_in_several_files_is_read_in_order() {
     let folder = tempfile::tempdir().unwrap();

@@ -58,7 +58,7 @@ fn a_column_may_say_whose_reading_a_row_is() {
     assert_eq!(echoes(text, two).unwrap_err(), "2 columns with ranges; with a column of sensors expected is one");
 }
 
-// A sensor asked for by name that never hears anything is there.
+// A sensor requested by name is listed even if it never hears anything.
 #[test]
 fn sensor_asked_for_by_name_is_listed_without_echoes() {
     let text = "left,deaf,right\n1.0,,\n1.1,,2.0\n";
@@ -68,6 +68,6 @@ fn sensor_asked_for_by_name_is_listed_without_echoes() {
         read.into_iter().filter(|(name, ..)| name == "deaf").map(|(.., echo)| echo).collect::<Vec<_>>()
     };
     assert_eq!(deaf(&["left", "deaf", "right"]), [Echo::Nothing; 2]);
-    // Nobody said that it is a sensor.
+    // Nothing says that it is a sensor.
     assert_eq!(deaf(&[]), []);
 }

@@ -9,7 +9,7 @@ const SENSORS: usize = 6;
 const PERIOD: i64 = 60_000;
 const WINDOW: i64 = 36_000;
 
-/// A sound in flight: its sender, and the change of its path in microseconds a second.
+/// A sound in flight: its sender, and the change of its path in microseconds per second.
 type Sent = (usize, f64);
 
 /// The log of a ring of this many phases, and the sender of each reading. Each pair has two paths, which shorten at 1
@@ -89,7 +89,7 @@ fn named(log: &FiringLog, truth: &[Option<Sent>], found: &Diagnosis) -> (f64, f6
     (f64::from(right) / f64::from(foreign.max(1)), f64::from(right) / f64::from(named.max(1)))
 }
 
-// Most senders are named, and the names are right; not as many as in a room, where what lies ahead comes nearer at one
+// Most senders are named, and the names are right; fewer than in a room, where all objects ahead come nearer at one
 // rate.
 #[test]
 fn senders_are_named_while_the_robot_drives() {
@@ -132,7 +132,7 @@ fn two_phases_name_no_sender_while_driving() {
     assert!(found.moved && found.named.iter().all(Option::is_none) && found.paths.is_empty());
 }
 
-// Where echoes stay, as along a corridor, or a log is short, odometry says that the robot drives.
+// If echoes stay the same, as along a corridor, or a log is short, odometry says that the robot drives.
 #[test]
 fn odometry_says_that_the_robot_drives() {
     let (short, _) = driven(1, 12, 10);

@@ -61,7 +61,7 @@ fn firing(readings: &Readings, k: usize) -> Firing {
     }
 }
 
-// On alcoves that nothing was tuned on.
+// The alcoves are ones that were not used for tuning.
 #[test]
 fn senders_in_a_log_of_flow_are_named() {
     let (mut foreign, mut right, mut named) = (0, 0, 0);
@@ -89,7 +89,7 @@ fn senders_in_a_log_of_flow_are_named() {
     assert!(foreign > 3_000 && share > 0.67 && sure > 0.99, "{foreign} foreign: {share} named, {sure} right");
 }
 
-// Random gaps never come again, so that the motion shows in the ranges alone.
+// Random gaps never repeat, so the motion shows in the ranges alone.
 #[test]
 fn robot_that_drives_is_known_by_its_ranges_and_by_its_log() {
     for (place, moves) in [(InAlcove(20_001), false), (InRoom(20_002), false), (BacksOut(20_003), true)] {
@@ -113,7 +113,7 @@ fn healthy_rings_have_no_fault() {
     }
 }
 
-// Where too few paths lead back in time the log cannot tell, and says so.
+// If too few paths lead back in time, the log cannot tell, and the diagnosis says so.
 #[test]
 fn a_cut_echo_line_is_deaf_or_the_log_cannot_tell() {
     let cut = [(InAlcove(1000), 4), (InAlcove(1001), 6), (InAlcove(1008), 6), (InAlcove(1027), 4), (InAlcove(1039), 1)];

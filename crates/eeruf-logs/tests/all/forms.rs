@@ -5,7 +5,7 @@ use std::path::Path;
 
 use eeruf_logs::{Echo, FieldChoice, Options, Pattern, RangeUnit, Report, Table, read_log, read_stream};
 
-/// A log's contents: each sensor's name and ranges in metres, `-` for no echo, `<` for too close, `!` for no number;
+/// A log's contents: each sensor's name and ranges in metres, `-` for no echo, `<` for too close, `!` for a non-number;
 /// and the seconds between its first two readings.
 pub(crate) fn said(bytes: &[u8], options: &Options) -> (String, Option<f64>, Report) {
     let mut readings = vec![];
@@ -77,7 +77,7 @@ fn each_form_gives_its_right_answer() {
     assert!(wrong.is_empty(), "{} wrong\n{}", wrong.len(), wrong.join("\n"));
 }
 
-// A message that nothing ends may be cut in the middle of a number.
+// A message without an end may be cut in the middle of a number.
 #[test]
 fn message_that_is_not_ended_gives_no_reading() {
     let text = "range: 0.40\n---\nrange: 0.41\n---\nrange: 0.4";
@@ -142,7 +142,7 @@ fn utf_16_and_packed_text_read_as_plain() {
         let report = read_log(&file, &Options::default(), |_, _| readings += 1).unwrap();
         assert_eq!((readings, report.names().join(" ").as_str(), report.damage.len()), (4, "left right", 0), "{name}");
         assert!(report.form.contains("packed by"), "{}", report.form);
-        // Half a file says so.
+        // The damage of a cut file is reported.
         std::fs::write(&file, &bytes[..bytes.len() - 6]).unwrap();
         let report = read_log(&file, &Options::default(), |_, _| {}).unwrap();
         assert!(!report.damage.is_empty(), "{name}");
@@ -273,7 +273,7 @@ fn repetition_is_said_and_overridden() {
     assert_eq!(said(text.as_bytes(), &options).0, "a_cm: 0.4 0.51 0.69; b_in: 0.399 0.511 0.691");
 }
 
-// Sensors side by side before a wall, one that is nearer by a constant factor, and one that falls silent.
+// Sensors side by side in front of a wall, one nearer by a constant factor, and one that falls silent.
 #[test]
 fn sensors_that_read_alike_stay_sensors() {
     let rows = |other: &dyn Fn(usize) -> String| {
@@ -320,9 +320,9 @@ fn tried(file: &str) -> (usize, Vec<String>, Vec<String>) {
     (right, open, wrong)
 }
 
-// At first sight the second forty were 30 right and 8 silently wrong, the third 28 and 10; of the 202 of trial 4 the
-// first forty 25 and 10, then 36 and 5, 31 and 4, 34 and 6, 34 and 4. The reader was mended each time. Not kept:
-// four columns of whole numbers without a name, of which two are no ranges, and a ceiling of 255 that comes twice.
+// At first sight, 30 of the second forty were right and 8 silently wrong; of the third forty, 28 and 10; of the 202 of
+// trial 4 by forties, 25 and 10, 36 and 5, 31 and 4, 34 and 6, 34 and 4. The reader was improved each time. Left out:
+// four unnamed columns of whole numbers, two of them not ranges, and a ceiling of 255 that occurs twice.
 #[test]
 fn forms_of_trials_are_mostly_right() {
     let trials = [

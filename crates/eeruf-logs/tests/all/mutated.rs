@@ -80,10 +80,10 @@ fn nothing_is_read_from_a_damaged_line() {
         let mut bytes = whole.clone().into_bytes();
         let at = random.below(bytes.len());
         match random.below(6) {
-            // The end, and the beginning. Of a single row nothing says how long its values are.
+            // The end, and the beginning. A single row does not show how long its values are.
             0 => bytes.truncate(at.max(150)),
             1 => _ = bytes.drain(..random.below(40.min(at + 1))),
-            // What is no digit.
+            // A byte that is not a digit.
             2 => bytes[at] = b"x?#\0\xff~"[random.below(6)],
             // A separator, or a line break.
             3 => {
@@ -106,7 +106,7 @@ fn nothing_is_read_from_a_damaged_line() {
             _ => {
                 let end = bytes[at..].iter().position(|&byte| byte == b'\n').map_or(bytes.len(), |end| at + end);
                 let start = bytes[..at].iter().rposition(|&byte| byte == b'\n').map_or(0, |place| place + 1);
-                // Between the digits of the last value nothing shows it.
+                // A cut between the digits of the last value cannot be detected.
                 let last = end.saturating_sub(4).max(start);
                 _ = bytes.drain(at.min(last)..end);
             }

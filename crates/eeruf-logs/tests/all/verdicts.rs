@@ -44,7 +44,7 @@ impl Counts {
             let fooled: Vec<_> = log.fooled.iter().filter(|(_, share)| **share >= 0.6).map(|(pair, _)| pair).collect();
             all.pairs[0] += fooled.len();
             all.pairs[1] += fooled.iter().filter(|pair| named.contains(pair)).count();
-            // In a chain a third sensor moves with two; a pair of which neither fools anyone is none.
+            // In a chain a third sensor moves with two; a pair is false if neither takes part in crosstalk.
             let is_of = |sensor: usize| log.fooled.keys().any(|&(a, b)| sensor == a || sensor == b);
             all.pairs[2] += named.iter().filter(|pair| !is_of(pair.0) && !is_of(pair.1)).count();
             all.healthy[1] += usize::from(is_blamed(&blocking_loop(seed, false).examine()));

@@ -6,9 +6,9 @@ use super::super::timeline::{Heard, Timeline};
 use super::Guess;
 use super::prior::{MOST_RATE, Rates};
 
-/// Time before and after a reading, in milliseconds, whose readings serve as evidence.
+/// Time before and after a reading, in milliseconds, within which other readings serve as evidence.
 const ASKED_MS: f64 = 400.0;
-/// Change of a rate, in microseconds for each millisecond and second: a robot at 1 m/s that passes an object at 1 m.
+/// Change of a rate, in microseconds per millisecond per second: a robot at 1 m/s that passes an object at 1 m.
 const BEND: f64 = 2.0;
 /// Half width of the interval of echo times for the density of accidental readings, and the width of its bins, in
 /// microseconds.

@@ -21,7 +21,7 @@ struct Point {
     sure: f64,
 }
 
-/// A line, with the sums that its fit takes, from its first point on.
+/// A line, with the sums for its fit, counted from its first point.
 struct Line {
     points: Vec<Point>,
     /// Sums of the times and of the travel times, of their squares, and of their products.

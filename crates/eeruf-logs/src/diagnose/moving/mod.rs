@@ -1,6 +1,6 @@
 //! Senders of readings while the robot drives.
 //!
-//! A path is then a line: over half a second its length changes at a constant rate, the same for all that lies ahead.
+//! A path is then a line: over half a second its length changes at a constant rate, the same for all objects ahead.
 //! For each firing that a reading may have heard, the readings before and after are tested for lying on one line with
 //! it, at *other* offsets between the two firings: those of the receiver, and those of the sender that heard the
 //! receiver, since sound takes equally long both ways. The likelihood ratio is integrated over all rates and over all
@@ -8,7 +8,7 @@
 //!
 //! Which sensors hear each other and how often, the life of sound, and the robot's speed are learned from the log in a
 //! few passes. From the second pass on, a reading that lies on another line proves less. No path is followed over the
-//! whole log, so no path is found by the test of [`super::search`]; each name states its probability of being wrong.
+//! whole log, so the test of [`super::search`] is not used; each name states its probability of being wrong.
 
 mod evidence;
 mod lines;

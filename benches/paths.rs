@@ -8,8 +8,8 @@ use std::hint::black_box;
 #[path = "../crates/eeruf-sim/tests/common/corpus.rs"]
 mod corpus;
 
-/// Places within a hundredth of the source's distance from the origin, in an order that jumps. Where a source
-/// stands still the processor learns which way each branch goes: pillars40 then takes two thirds of the time.
+/// Places within a hundredth of the source's distance from the origin, in an order that jumps. If a source
+/// stands still, the processor learns which way each branch goes, and pillars40 takes two thirds of the time.
 fn places(source: Point) -> Vec<Point> {
     (0..512).map(|k| source * (1.0 + 0.02 * (f64::from(k * 197 % 512) / 512.0 - 0.5))).collect()
 }

@@ -1,5 +1,5 @@
-//! Number of readings a second that are simulated on one core: a static world with its paths known, one that moves, and
-//! Set I with everything from the walls on; and how much faster than real time the courses of Set II are driven.
+//! Simulated readings per second on one core, in a static world with known paths, in a moving one, and in Set I with
+//! all of its work; and the speed of the courses of Set II relative to real time.
 
 use eeruf_benches::time;
 use eeruf_sim::experiments::set_one::Alcove;
@@ -47,7 +47,7 @@ fn moving() {
     }
 }
 
-/// Robots driven through courses. Elements are simulated milliseconds, so that thousands a second are times real time.
+/// Drives robots through courses. Elements are simulated milliseconds, so thousands per second mean times real time.
 fn set_two() {
     let one_core = rayon::ThreadPoolBuilder::new().num_threads(1).build().expect("a thread starts");
     let rooms = [("alone", None), ("beside a second robot", Some(SECOND_BEHIND))];

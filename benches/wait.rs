@@ -15,7 +15,7 @@ use common::tables::{Case, File};
 use eeruf_benches::time;
 use eeruf_core::search::{Budget, COUNT_WORDS, MEMORY_WORDS};
 
-/// The problems counted: those of the shared tables with many tables, and two of more nodes.
+/// The counted problems: those of the shared tables with many solutions, and two that need more nodes.
 fn counts() -> Vec<Case> {
     let mut cases: Vec<Case> = File::read().cases.into_iter().filter(|case| case.count > 100_000).collect();
     for (criterion, count) in [("paper", 93_184), ("exact", 6_092_216)] {

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Checks certificates that a firing schedule's period is the shortest one: python3 check_period.py FILE ...
 
-Python's standard library alone; shares nothing with the search that found the schedule.
-docs/reference/certificate.md has problem and format; its sections "The rules" and "What the root may assume" have the
+It needs only Python's standard library, and shares nothing with the search that found the schedule.
+docs/reference/certificate.md has the problem and the format; its sections "The rules" and "What the root may assume" have the
 proofs. All times are whole ticks. Sensor x fires at a[x] in phase a, at b[x] in phase b, both in [0, T); d[x] = a[x] - b[x]. Required: |d| differ
 by the larger of two separations D; 2 |d[x]| >= D[x] if stale_echo; T - |d[x]| >= window[x]; after x, y fires no sooner
 than gap[x][y]. A schedule for T is one for longer periods: times within a phase stay, those across phases grow. So
@@ -187,14 +187,14 @@ class Counting:
         return [(members, least)] + [(clique, self.pace(clique, 1, gaps[clique])) for clique in whole]
 
     def pace(self, members, at_once, gap):
-        """At most this many firings in a row lie within a gap: as many steps take one, and so do more turns of 2 T."""
+        """At most this many firings in a row lie within a gap: this many steps take a gap, also over several 2 T."""
         size, gap = len(members), min(gap, *(self.problem.R[x] for x in members))
         return [max(gap * ((steps + 2 * size * turns) // at_once) - 2 * self.T * turns for turns in range(at_once))
                 for steps in range(2 * size + 1)]
 
 def permute(rooms, each, more, alike, moved=()):
-    """True if some permutation of places moves no more sensors by each distance than there is room for: by each place
-    as many, of some places one more, and by as many places the same distance and direction."""
+    """True if some permutation of places moves no more sensors by each distance than there is room for: `each` sensors
+    with each place, one more with `more` of the places, and `alike` places by the same distance and direction."""
     n, moves = len(rooms), Counter(moved)
     places = [moves[c] + moves[-c] * (c > 0) for c in range(n)]
     if any(count > room // each * alike for count, room in zip(places, rooms)):
@@ -215,7 +215,7 @@ class Lanes:
         self.most = self.top - self.ones  # all other bits
 
     def not_less(self, p, q):
-        """The lanes in which p >= q, as a set: what is above q keeps a bit that is put on top of it."""
+        """The lanes in which p >= q, as a set: a lane that is not less than q keeps the bit that is put on top of it."""
         return (p | self.top) - q & self.top
 
     def least(self, p, q):
@@ -291,8 +291,8 @@ class Node:
         return (self.M >> self.at[i][j] & self.lane) - self.zero
 
     def learn(self, i, j, bound):
-        """Rule 1, closure: t[k] - t[h] = (t[i] - t[h]) + (t[j] - t[i]) + (t[k] - t[j]): bounds add along ways; a way
-        round is 0."""
+        """Rule 1, closure: t[k] - t[h] = (t[i] - t[h]) + (t[j] - t[i]) + (t[k] - t[j]): bounds add along paths, and a
+        closed path is 0."""
         M, at = self.M, self.at
         if bound + self.zero >= M >> at[i][j] & self.lane:
             return False
@@ -320,7 +320,7 @@ class Node:
     def learn_below(self, x, y):
         self.learn_all_below(self.one[x], y)
     def learn_all_below(self, some, y):
-        """Below is transitive, not circular."""
+        """The relation "below" is transitive and has no cycles."""
         if some := some & ~self.below[y]:
             down, up = some, self.above[y] | self.one[y]
             for x in self.lanes.members(some):

@@ -5,10 +5,10 @@
     python benches/peers/cpsat.py race target/rings.jsonl [--limit 60]
     python benches/peers/cpsat.py small target/release/eeruf [--rings 300] [--seed 20000]
 
-`race` prints a line a ring: period, bound, and the seconds of a core until that period was found or proven; then the geometric means of two
-ratios with 95 % intervals: of the times until the peer's last period or a shorter one was found, and until the answer was proven, a limit
-counting as the seconds spent; less than 5 ms counts as 5. `small` draws rings of two to six sensors with needs of their own from seeds,
-writes them as ring files, and ends at the first difference. The model is the definition (docs/reference/certificate.md, "The problem").
+`race` prints for each ring the period, the bound, and the seconds of one core until that period was found or proven. Then it prints two
+geometric means of ratios, with 95 % intervals: for the time until the peer's last period or a shorter one was found, and for the time until
+the answer was proven. An expired limit counts as the time spent, and less than 5 ms as 5 ms. `small` draws rings of two to six sensors with
+needs of their own from seeds, writes them as ring files, and ends at the first difference. The model is the definition (docs/reference/certificate.md, "The problem").
 """
 
 import argparse
@@ -130,7 +130,7 @@ def told(steps: Steps, bound: int, spent: float) -> str:
 
 
 def draw(dice: random.Random) -> dict:
-    """A small ring's needs, times in ticks."""
+    """Draw a small ring's needs, with times in ticks."""
     sensors = dice.randint(2, 6)
     pairs = list(itertools.combinations(range(sensors), 2))
 
@@ -158,7 +158,7 @@ def draw(dice: random.Random) -> dict:
 
 
 def ring_file(ring: dict) -> str:
-    # A tolerance of t ticks less a microsecond: 2 t ticks are the smallest number above twice of it; of none, one tick is.
+    # A tolerance of t ticks less a microsecond: 2 t ticks are the smallest number above twice that; without one, one tick is.
     keys = {
         "sensors": ring["sensors"],
         "neighbours": ring["neighbours"],
@@ -176,7 +176,7 @@ def ring_file(ring: dict) -> str:
 
 
 def problem(ring: dict) -> dict:
-    """The needs pair by pair."""
+    """Return the needs pair by pair."""
     gaps = []
     for x, y in itertools.combinations(range(ring["sensors"]), 2):
         apart = min(y - x, ring["sensors"] - (y - x)) if ring["layout"] == "ring" else y - x
@@ -189,7 +189,7 @@ def problem(ring: dict) -> dict:
 
 
 def small(program: str, rings: int, first: int, limit: float) -> None:
-    """Compare what `eeruf design` says of random small rings."""
+    """Compare the answers of `eeruf design` for random small rings with the peer's."""
     unknown = 0
     with tempfile.TemporaryDirectory() as folder:
         file = pathlib.Path(folder) / "ring.toml"

@@ -8,7 +8,7 @@
 Core against core: pyroomacoustics' compiled `image_source_model` of one source with eight receivers against the images that
 `Tracer::sight` finds. The whole answer of `Tracer::trace` (sorted, with wall sequences, angles and amplitudes, which the
 peer's core does not give) is printed beside it. The path sets are compared as well: counts per scene and lengths.
-Only rooms of one closed polygon are in both programs' reach.
+Both programs can handle only rooms of one closed polygon.
 """
 
 import argparse

@@ -3,8 +3,8 @@
 
     python3 -m venv VENV && VENV/bin/pip install pyroomacoustics==0.10.1 . && VENV/bin/python benches/peers/rooms_pyroomacoustics.py
 
-200 boxes, corridors and L-shaped rooms, order 3, two receivers each: counts, lengths, and how many times as long the peer's
-`image_source_model` takes as `Scene.paths`. Its core is single precision.
+200 boxes, corridors and L-shaped rooms, order 3, two receivers each: counts, lengths, and the time of the peer's
+`image_source_model` relative to `Scene.paths`. Its core has single precision.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ MARGIN_M = 0.03
 
 
 def corners_of(kind: int, rng: np.random.Generator) -> list[tuple[float, float]]:
-    """The corners of a box, a corridor or an L, counter-clockwise."""
+    """Return the corners of a box, a corridor or an L, counter-clockwise."""
     if kind == 1:
         x, y = rng.uniform(1.2, 2.4), rng.uniform(6.0, 15.0)
     else:

@@ -5,9 +5,9 @@
     cargo build --profile wheel -p eeruf-lab    # the same calls in Rust, built as the wheel is
     target/python/bin/python benches/python/overhead.py
 
-Each call is timed by the best of many runs; what Python adds is the difference. Then: how much longer than `pass` a process
-runs that imports eeruf, how many steps and resets a batch does on one core, and how long Ctrl-C takes to end long work. Nothing
-else should run beside it.
+The time of a call is the best of many runs; Python's share is the difference. Then come the extra time of a process that
+imports eeruf compared with `pass`, the steps and resets of a batch on one core, and the time until Ctrl-C ends long work.
+Nothing else should run meanwhile.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ from eeruf import experiments, sim
 
 ROOT = Path(__file__).resolve().parents[2]
 NEEDS: dict[str, Any] = {"t_delta_us": 999, "min_interval_us": 15_000, "window_us": 36_000}
-# What Ctrl-C interrupts; each tells when it is under way, and would take minutes.
+# Calls for Ctrl-C to interrupt; each tells when it is under way, and would take minutes.
 LONG = {
     "design": """
 import random
@@ -99,9 +99,9 @@ def batch(order: int) -> tuple[float, float]:
 
 
 def beyond_pass_ms(what: str) -> float:
-    """Return how much longer a fresh interpreter runs that imports something than one that does nothing, in milliseconds.
+    """Return the extra time of a fresh interpreter that imports something, compared with one that does nothing, in milliseconds.
 
-    By the clock on the wall, from start to end of the process: the median of 25 differences, one run of each kind in turn.
+    Wall-clock time, from start to end of the process: the median of 25 differences, one run of each kind in turn.
     """
 
     def process_s(program: str) -> float:

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Sixteen sonars in four rooms beside polling, which is what robots with two arrays do: each array one sensor after the other,
-40 ms apart. Prints right echoes a second as a multiple of polling's, the share of foreign sound in what was believed, and blind
-sensors, each of the median place and of the worst.
+"""Compare sixteen sonars in four rooms with polling, the usual way of robots with two arrays: each array fires one sensor after
+another, 40 ms apart. Prints right echoes per second as a multiple of polling's, the share of foreign sound among believed echoes,
+and the number of blind sensors, for the median place and for the worst.
 
     cargo xtask python                          # makes target/python, with the wheel in it
     target/python/bin/python benches/python/polling.py [--places 15] [--first 20261125]
@@ -31,7 +31,7 @@ SENSORS = [(x, y, np.deg2rad(angle)) for x, y, angle in FRONT + mirrored(FRONT) 
 
 
 def box(x: float, y: float, width: float, height: float, inside: bool = False) -> list[list[float]]:
-    """The walls of a room around who is inside, or of a cupboard."""
+    """Return the walls of a room, seen from inside, or of a cupboard."""
     corners = [(x, y), (x + width, y), (x + width, y + height), (x, y + height)]
     corners = corners if inside else corners[::-1]
     return [[*here, *there] for here, there in zip(corners, corners[1:] + corners[:1])]
@@ -52,7 +52,7 @@ def polling(_period: int) -> tuple[int, list[tuple[int, int]], int]:
 
 
 def figures(way: Any, scene: sim.Scene, period_us: int) -> tuple[float, float, int]:
-    """Right echoes a second, foreign share of believed echoes, blind sensors: right in under 5 % of their firings."""
+    """Return right echoes per second, the foreign share of believed echoes, and blind sensors, right in under 5 % of firings."""
     if way == "polling":
         got = sim.Simulation(scene, "conventional", firing=polling).step(20.0)
     else:

@@ -1,13 +1,13 @@
-//! Rooms that a ring is judged in.
+//! Rooms in which a ring is judged.
 
 use eeruf_sim::experiments::rooms::{RoomGroup, RoomsOptions};
 
 /// Rooms and limits for judging ways of firing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RoomsAsked {
-    /// Rooms of the caller; empty for those of the set.
+    /// The caller's own rooms; empty for the usual ones.
     pub own: Vec<RoomGroup>,
-    /// Number of rooms of each kind of the set. The default is 6.
+    /// Number of usual rooms of each kind. The default is 6.
     pub places: u64,
     /// Number of the first room of each kind. The default is 0: ways are chosen on numbers below 2,000, and reported
     /// from 20,000 on.

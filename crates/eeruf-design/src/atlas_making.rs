@@ -27,7 +27,7 @@ pub fn header() -> &'static str {
 /// Searches a ring. The row depends on nothing but the ring.
 ///
 /// # Errors
-/// Why a ring is invalid, in words.
+/// The reason why the ring is invalid, in words.
 pub fn make(ring: &Ring) -> Result<Row, String> {
     searched(ring, scaled(BUDGET, ring)).and_then(|row| again(&row, 0))
 }
@@ -40,7 +40,7 @@ fn searched(ring: &Ring, nodes: u64) -> Result<Row, String> {
     Ok(Row { ring: *ring, period, bound, certified: 0, hash: String::new(), preferred, fire })
 }
 
-/// The length of a row's tick: a millisecond.
+/// Converts a time to a row's ticks of a millisecond.
 fn in_ticks(time: Micros) -> u32 {
     time.as_micros() / 1000
 }
@@ -60,7 +60,7 @@ fn fire_of(ring: &Ring, schedule: &AnySchedule) -> [Vec<u32>; 2] {
 pub fn again(row: &Row, nodes: u64) -> Result<Row, String> {
     let (mut row, ring, problem) = (row.clone(), &row.ring, row.ring.problem());
     if row.bound < row.period {
-        // Without nodes what is counted.
+        // Without nodes, the bound comes from counting.
         let found = searched(ring, scaled(nodes, ring))?;
         row.bound = row.bound.max(found.bound);
         if found.period < row.period {
@@ -81,7 +81,7 @@ pub fn again(row: &Row, nodes: u64) -> Result<Row, String> {
 /// The certificate of a row's schedule and bound.
 ///
 /// # Errors
-/// If the row's claim is wrong.
+/// The row's claim is wrong.
 pub fn certificate_of(row: &Row) -> Result<String, NoProof> {
     let problem = row.ring.problem();
     let schedule = row.schedule(problem.tick).ok_or_else(|| NoProof::Claim("no schedule".to_owned()))?;

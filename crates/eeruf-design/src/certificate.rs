@@ -1,4 +1,4 @@
-//! The certificate of a design: of the search it uses only the schedule and the bound.
+//! The certificate of a design: from the search it uses only the schedule and the bound.
 
 use core::fmt;
 
@@ -7,7 +7,7 @@ use eeruf_files::AnySchedule;
 use eeruf_period::PeriodProblem;
 use eeruf_period::engine::prove::{NoProof, prove_what_can_be};
 
-/// Returns a certificate as text: that no period is shorter than the schedule's, or than `bound`. If its proof would
+/// Returns a certificate, as text, that no period is shorter than the schedule's, or than `bound`. If its proof would
 /// have more than `budget` nodes, or if `go_on`, called with the nodes so far, returns false, the certificate is for a
 /// lower bound.
 ///
@@ -30,8 +30,8 @@ pub struct Stated {
     pub period: u32,
     /// Proven bound of the period, in ticks.
     pub bound: u32,
-    /// Upper limit of the nodes of the proof's tree: two for each branching, or as many as sensors if the branching is
-    /// on which fires next.
+    /// Upper limit of the nodes of the proof's tree: two for each branching, or one per sensor if it branches on the
+    /// next sensor to fire.
     pub nodes: usize,
     /// A tick is `tick_us.0 / tick_us.1` microseconds.
     tick_us: (u32, u32),

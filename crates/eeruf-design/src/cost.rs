@@ -1,5 +1,5 @@
-//! A ring judged under the conditions that its file names: by how soon it sees things that appear, with the cost of
-//! [`measure`](eeruf_sim::experiments::measure).
+//! Judgement of a ring under the conditions that its file names: by how soon it sees objects that appear, with the cost
+//! of [`measure`](eeruf_sim::experiments::measure).
 
 use eeruf_sim::Robot;
 use eeruf_sim::experiments::measure::{
@@ -35,7 +35,7 @@ pub struct CostAnswer {
     pub turn_deg_s: f64,
     /// The kinds of ways, the simplest first.
     pub kinds: Vec<KindCost>,
-    /// The kind to recommend where the ring is used under one condition alone, or its modules have the other gain.
+    /// The kind to recommend if the ring is used under one condition alone, or if its modules have the other gain.
     pub elsewhere: Vec<(String, Option<String>)>,
 }
 
@@ -59,8 +59,8 @@ pub struct BestWay {
     pub way: &'static str,
     /// Votes that the way's readings need.
     pub votes: String,
-    /// False if the way has more than one false stop a minute in the rooms where votes were chosen, as has every way of
-    /// its kind.
+    /// False if the way has more than one false stop a minute in the rooms where votes were chosen; every way of its
+    /// kind then has.
     pub keeps: bool,
     /// The figures.
     #[serde(flatten)]
@@ -72,21 +72,21 @@ pub struct BestWay {
 pub struct UnderCondition {
     /// The condition's name.
     pub condition: &'static str,
-    /// The time in which 95 % of what appears is seen, in ms; infinite, and null in JSON, if less is.
+    /// The time within which 95 % of appearing objects are seen, in ms; infinite, and null in JSON, if fewer are seen.
     pub t95_ms: f64,
-    /// Interval of that time.
+    /// 95 % interval of `t95_ms`.
     pub t95_ms_95: [f64; 2],
-    /// The way that a robot drives in that time, in metres; none if it does not drive.
+    /// The distance that the robot drives within `t95_ms`, in metres; none if it does not drive.
     pub blind_travel_m: Option<f64>,
-    /// Interval of that way.
+    /// 95 % interval of `blind_travel_m`.
     pub blind_travel_m_95: Option<[f64; 2]>,
-    /// False stops a minute.
+    /// Number of false stops per minute.
     pub false_stops_per_min: f64,
-    /// 95 % interval of false stops a minute.
+    /// 95 % interval of `false_stops_per_min`.
     pub false_stops_per_min_95: [f64; 2],
 }
 
-/// Measurements in rooms for choosing votes, and in those that are reported.
+/// Measurements in rooms for choosing votes, and in rooms for the report.
 struct Both {
     chosen: Measured,
     measured: Measured,
@@ -132,7 +132,7 @@ fn name_of(family: usize) -> String {
 }
 
 impl RingSpec {
-    /// The rate at which its robot turns in rooms, in degrees a second: the ring's, or 45, a choice.
+    /// The rate at which the ring's robot turns in rooms, in degrees a second: the file's, or else 45, a choice.
     pub fn room_turn_deg_s(&self) -> f64 {
         self.turn_deg_s.filter(|&deg_s| deg_s > 0.0).unwrap_or(USUAL_TURN_DEG_S)
     }
@@ -148,7 +148,7 @@ impl RingSpec {
     /// `keep_going` is as for [`judge_in_rooms`](Self::judge_in_rooms).
     ///
     /// # Errors
-    /// A room in which the robot cannot be, and if it was stopped, in words.
+    /// A room in which the robot does not fit, or a stop by `keep_going`, in words.
     pub fn way_in_rooms(
         &self,
         way: &RoomWay,
@@ -186,7 +186,7 @@ impl RingSpec {
     /// `keep_going` is as for [`judge_in_rooms`](Self::judge_in_rooms).
     ///
     /// # Errors
-    /// A ring without places, and if it was stopped, in words.
+    /// A ring without places, or a stop by `keep_going`, in words.
     pub fn cost_in_rooms(
         &self,
         design: Option<&RingDesign>,
@@ -198,7 +198,7 @@ impl RingSpec {
         let speeds = Speeds { speed_m_s, turn_rad_s: turn_deg_s.to_radians() };
         let run = |robot: &Robot, conditions: &[Condition], first, places| -> Result<Measured, String> {
             let ways = measured_ways(robot, design.map(|design| &design.schedule)).into_iter();
-            // Of all but one by one, what a program has.
+            // Except for one by one, only the ways that a program can use.
             let has_program = |of: &MeasuredWay| of.family == Family::OneByOne || Way::of(&of.way).is_some();
             let ways: Vec<_> = ways.filter(has_program).map(|way| (way, None)).collect();
             let asked = MeasureAsked { conditions: conditions.into(), first, places, speeds };
@@ -213,7 +213,7 @@ impl RingSpec {
             cost: cost.cost,
             best: here.best(family),
         });
-        // Only named, and so chosen where it is measured.
+        // Only the name is used, so votes are chosen in the measured rooms.
         let there = |robot: &Robot, conditions: &[Condition]| -> Result<Both, String> {
             let measured = run(robot, conditions, asked.first, fewer)?;
             Ok(Both { chosen: measured.clone(), measured })

@@ -1,4 +1,4 @@
-//! A value of a ring file that is one for all sensors, or a list of one for each.
+//! A value of a ring file: one for all sensors, or a list with one for each.
 
 use core::fmt;
 use core::marker::PhantomData;

@@ -26,7 +26,7 @@ const CERTIFICATE_BUDGET: usize = 4_000 * 16 * 16;
 pub struct RingDesign {
     /// The schedule.
     pub schedule: AnySchedule,
-    /// The change that `t_delta` has to cover, motion included.
+    /// The change that `t_delta` has to cover, including motion.
     pub t_delta: Micros,
     /// The ring, with the design's `t_delta`.
     pub spec: RingSpec,
@@ -41,18 +41,18 @@ pub struct RingDesign {
     pub reason: String,
     /// Slack of the schedule, if the period is proven: no other schedule with this period has more.
     pub to_spare: Option<ToSpare>,
-    /// True if period and schedule are the atlas's, and nothing was searched.
+    /// True if period and schedule come from the atlas, without a search.
     pub from_atlas: bool,
     /// Bound of the period by the certificate of the atlas's row; see [`certified`](Self::certified).
     pub(crate) known_certified: Option<Micros>,
-    /// Changes that would shorten the period, if they were asked for.
+    /// Changes that would shorten the period, if requested.
     pub what_if: Vec<WhatIf>,
 }
 
 /// Reason why a ring gets no design.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoDesign {
-    /// Needs that make no sense or are too large to search.
+    /// The needs are invalid, or too large to search.
     Search(SearchError),
     /// Longer periods need more separation, which needs longer periods, without end.
     TooFast,
@@ -135,7 +135,7 @@ impl RingSpec {
     /// Finds the shortest period, and the preferred schedule with it.
     ///
     /// # Errors
-    /// Why there is none.
+    /// The reason why there is no design.
     pub fn shortest(&self, search: &Effort, control: &mut impl Control) -> Result<RingDesign, NoDesign> {
         let mut design = self.shortest_at_once(search, control)?;
         if self.handling > Micros::ZERO {
@@ -147,7 +147,7 @@ impl RingSpec {
         Ok(design)
     }
 
-    /// Like [`shortest`](Self::shortest), for a controller that fires any number of sensors at once.
+    /// The design for a controller that fires any number of sensors at once; see [`shortest`](Self::shortest).
     fn shortest_at_once(&self, search: &Effort, control: &mut impl Control) -> Result<RingDesign, NoDesign> {
         match self.speed_mm_s {
             None | Some(0) => self.shortest_at_rest(search, control),
@@ -163,7 +163,7 @@ impl RingSpec {
         search: &Effort,
         control: &mut impl Control,
     ) -> Result<RingDesign, NoDesign> {
-        // What is proven without handling holds with it.
+        // Bounds that are proven without handling hold with it.
         let (bound, bounding) = (at_once.bound, at_once.bounding.clone());
         let step = Micros::new(self.handling.as_micros().div_ceil(2));
         let mut design = at_once;
@@ -172,7 +172,7 @@ impl RingSpec {
             if let Some(apart) = self.moved_apart(&design.schedule) {
                 let t_delta = self.t_delta_needed(&apart).max(design.bounding.t_delta);
                 (design.spec, design.t_delta) = (self.covering(t_delta), t_delta);
-                // Chosen for what it had to spare before.
+                // The slack was that of the schedule before the move.
                 if apart != design.schedule {
                     (design.schedule, design.to_spare) = (apart, None);
                 }

@@ -54,9 +54,9 @@ impl RingSpec {
     /// The settings by which the ring fires by flow, with the seed of its dice.
     ///
     /// # Errors
-    /// The first thing by which its robot cannot be built.
+    /// The first reason why the ring's robot cannot be built.
     pub fn flow(&self, seed: u32) -> Result<FlowDesign, String> {
-        // Where sensors stand is of no account.
+        // The places of the sensors do not matter.
         let robot = Robot::of_ring(&self.robot_ring(), Pose::identity(), Some(vec![Pose::identity(); self.sensors]))?;
         Ok(self.flow_of(&Robot { others: self.others, reach: self.reach(), ..robot }.by_flow(), seed))
     }
@@ -79,7 +79,7 @@ impl RingSpec {
         let limits = if is_alike {
             EachSensor::NONE
         } else {
-            // No more counts than what its judge compares by.
+            // A sensor's own limit counts only if it is below that of the judge.
             let t_delta = belief.t_delta;
             EachSensor::for_flow(
                 std::array::from_fn(|sensor| SensorLimits {
@@ -110,11 +110,11 @@ mod tests {
             let flow = spec.fired(way, &spec.room_robot().unwrap().robot, 1).unwrap();
             [flow.window, flow.turns.least, flow.turns.most].map(Micros::as_micros)
         };
-        // R with its tail, and the least quiet of it.
+        // R with its tail, and the least quiet that follows from it.
         assert_eq!(of("speed_m_s = 2.0\nothers = false", Way::Flow), [13_986, 3_108, 17_094]);
         let fast = ring("speed_m_s = 2.0\nothers = false").flow(1).unwrap();
         assert_eq!((fast.turns.most.as_micros(), fast.belief.alone), (17_094, false));
-        // At 3 m/s it stands after 5.1 m.
+        // At 3 m/s the robot stops within 5.1 m.
         assert_eq!(of("speed_m_s = 3.0", Way::Flow)[0], 29_720);
         let all = of("speed_m_s = 0.9", Way::Flow);
         assert!(all[0] > 60_000 && all[2] > 70_000, "{all:?}");

@@ -1,9 +1,9 @@
-//! Firings that wait for each other: a controller needs some time for each, and gives it to one after the other.
+//! Firings that wait for each other: a controller needs some time for each, and handles one after the other.
 //!
 //! A schedule may let sensors fire at the same instant that do not hear each other. The controller fires them one by
-//! one, so that all but the first come late, and differently in each phase, since other firings coincide there. What
-//! was proven of the planned times does not hold of the real ones, and readings become ambiguous. So firings are moved
-//! apart by as much as one takes, within what the schedule has to spare.
+//! one, so that all but the first come late, and differently in each phase, since other firings coincide there. Proofs
+//! for the planned times do not hold for the real ones, and readings become ambiguous. So firings are moved apart by
+//! the time that one takes, within the slack of the schedule.
 
 use eeruf_core::{MAX_SENSORS, Micros, Phase};
 use eeruf_files::AnySchedule;
@@ -16,20 +16,20 @@ const TRIES: u32 = 5_000;
 const SEED: u64 = 1;
 
 impl RingSpec {
-    /// Returns the schedule with all firings apart by what the controller needs for one: the attempt that keeps most
-    /// separation; `None` if no attempt meets the ring's needs. Sensors declared `together` still fire together.
+    /// Returns the schedule with all firings apart by the time that the controller needs for one: the attempt with the
+    /// most separation; `None` if no attempt meets the ring's needs. Sensors declared `together` still fire together.
     pub(crate) fn moved_apart(&self, schedule: &AnySchedule) -> Option<AnySchedule> {
         if self.handling == Micros::ZERO {
             return Some(*schedule);
         }
         let requirements = self.problem().requirements;
-        // Sensors that fire together are one to the controller.
+        // Sensors that fire together count as one for the controller.
         let units: Vec<usize> =
             (0..self.sensors).filter(|&x| (0..x).all(|y| !requirements.fire_together(x, y))).collect();
         let mut random = Random::new(SEED);
         let ways = (0..TRIES).filter_map(|_| {
             let mut t_fire = [[Micros::ZERO; MAX_SENSORS]; 2];
-            // The same order of those that coincide in both phases moves them alike, and crosstalk less.
+            // Sensors that coincide in both phases keep their order, which moves them alike, and crosstalk less.
             let ranks: Vec<u64> = units.iter().map(|_| random.bits()).collect();
             for (phase, times) in [Phase::A, Phase::B].into_iter().zip(&mut t_fire) {
                 let planned = |unit: usize| schedule.t_fire(phase, unit).unwrap_or_default();
@@ -71,8 +71,8 @@ impl RingSpec {
     }
 }
 
-/// Moves ascending instants apart by at least `least`: those too soon after another are delayed, and of those that
-/// coincide some are moved earlier.
+/// Moves ascending instants apart by at least `least`: an instant too soon after another is delayed, and some of those
+/// that coincide are moved earlier.
 fn apart(planned: &[Micros], least: Micros, random: &mut Random) -> Vec<Micros> {
     let mut moved = planned.to_vec();
     for group in moved.chunk_by_mut(|one, next| one == next) {

@@ -33,7 +33,7 @@ impl<'a> Heard<'a> {
         let frequency_hz = f64::from(module.frequency_hz);
         let absorption_db_per_m = air.absorption_db_per_m(frequency_hz);
         let wave_number = TAU * frequency_hz / air.speed_of_sound();
-        // The body that it stands on.
+        // The robot's body blocks the sound behind the sensor.
         let piston = Piston { beam: Beam::CutAt90, ..Piston::new(wave_number, f64::from(module.radius_um) / 1e6) };
         let mut pattern: Vec<f64> = (0..=180_u32)
             .map(|deg| {
@@ -97,7 +97,7 @@ pub(crate) fn hearing(poses: &[Pose], modules: &[Module], air: Air, farthest_m: 
 
 fn hear(one: &Heard<'_>, other: &Heard<'_>, farthest_m: f64) -> bool {
     let middle = [0, 1].map(|axis| 0.5 * (one.at[axis] + other.at[axis]));
-    // Any point turns sound back, by a wall through it that stands as it must.
+    // Any point can reflect sound, by a wall through it at the right angle.
     let mut points = (0..DISTANCES).flat_map(|step| {
         let share = f64::from(step) / f64::from(DISTANCES - 1);
         let away_m = NEAREST_M * libm::pow(farthest_m.max(NEAREST_M) / NEAREST_M, share);
@@ -107,7 +107,7 @@ fn hear(one: &Heard<'_>, other: &Heard<'_>, farthest_m: f64) -> bool {
         })
     });
     let hear_at = |point| one.hears(other, point, farthest_m) || other.hears(one, point, farthest_m);
-    // The middle is on the straight way, if there is one.
+    // The middle is on the direct path, if there is one.
     let apart_m = length(one.at[0] - other.at[0], one.at[1] - other.at[1]);
     (apart_m > NEAREST_M && hear_at(middle)) || points.any(hear_at)
 }
@@ -141,7 +141,7 @@ mod tests {
         assert!(two(90.0, 0.2, [HC_SR04; 2]) && !two(135.0, 0.2, [HC_SR04; 2]));
     }
 
-    // By the simulator's own tracer: no wall as near as the limit lets two hear each other that are said not to.
+    // By the simulator's own tracer, no wall within the limit lets two sensors hear each other that are said not to.
     #[test]
     fn no_wall_near_by_joins_a_deaf_pair() {
         let (air, farthest_m) = (Air::default(), 1.5);
@@ -198,7 +198,7 @@ mod tests {
         // Pairs that a file names are its own.
         let named = spec(&format!("{ring}{arc}layout = [[0, 4]]"));
         assert!(named.layout.layout().neighbours(8, 0, 4) && named.not_neighbours.is_empty());
-        // A pair back to back asks for no interval.
+        // A pair back to back needs no interval.
         let poses = "poses = [{ x_m = 0.1, y_m = 0 }, { x_m = -0.1, y_m = 0, heading_deg = 180 }]";
         let pair = spec(&format!("{}{poses}", ring.replace('8', "2")));
         assert!(!pair.layout.layout().neighbours(2, 0, 1));

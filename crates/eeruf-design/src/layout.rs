@@ -69,7 +69,7 @@ impl OwnedLayout {
         }
         let mut kept = rows.to_vec();
         kept.iter_mut().zip(hearing).for_each(|(row, hearing)| *row &= hearing);
-        // One with a name says more, and is searched faster.
+        // A named layout says more, and is searched faster.
         let named = (1..=self.neighbours).flat_map(|neighbours| {
             [LayoutName::Line, LayoutName::Ring].map(|name| Self { name: Some(name), neighbours, rows: vec![] })
         });
@@ -95,7 +95,7 @@ impl LayoutKey {
             Self::Pairs(pairs) => pairs,
         };
         let rows = neighbour_rows(pairs.iter().copied(), sensors).map_err(|error| match error {
-            // As the file counts them.
+            // Sensors are counted as in the file.
             RequirementsError::Neighbours { pair: (x, y), sensors } => {
                 format!(
                     "layout: neighbours [{x}, {y}]; expected two different sensors, counted from 0 to {}",

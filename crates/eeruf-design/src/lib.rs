@@ -3,20 +3,20 @@
 //!
 //! | file | content |
 //! |---|---|
-//! | `limits`, `layout` | what numbers a ring file may hold; how the sensors stand |
-//! | `each`, `uneven` | one number for all sensors or one for each; what sensors need that are not alike |
-//! | `ring` | the ring file, turned into what a schedule must meet |
-//! | `read`, `plausible` | the text of one, refused if its numbers are in other units |
-//! | `places`, `urdf`, `hearing` | where the sensors are on the robot, and which hear each other there |
-//! | `shortest` | the shortest period for that, from the atlas or by `eeruf-period` |
-//! | `find`, `what_if` | the design of a ring, and what would make it shorter |
+//! | `limits`, `layout` | ranges of the numbers in a ring file; arrangement of the sensors |
+//! | `each`, `uneven` | one number for all sensors or one for each; needs of sensors that differ |
+//! | `ring` | the ring file, turned into requirements on a schedule |
+//! | `read`, `plausible` | the text of a ring file, refused if its numbers are in other units |
+//! | `places`, `urdf`, `hearing` | places of the sensors on the robot, and pairs that hear each other there |
+//! | `shortest` | the shortest period for requirements, from the atlas or by `eeruf-period` |
+//! | `find`, `what_if` | the design of a ring, and changes that would shorten its period |
 //! | `moving` | the shortest period of a ring that moves |
-//! | `handling` | firings apart by what the controller needs for one |
-//! | `questions` | what fits into a given period, and the curve of a need |
-//! | `found` | the answer as it is printed in JSON |
-//! | `atlas`, `atlas_making` | rings whose shortest period is known; how their file is made |
+//! | `handling` | firings moved apart by the time that the controller needs for one |
+//! | `questions` | schedules that fit into a given period, and the curve of a need |
+//! | `found` | the answer in JSON |
+//! | `atlas`, `atlas_making` | rings with known shortest periods; the making of their file |
 //! | `certificate` | the proof, as a text that others check |
-//! | `asked`, `rooms`, `cost`, `flow`, `way` | feature `rooms`: ways of firing it, judged by the simulator |
+//! | `asked`, `rooms`, `cost`, `flow`, `way` | feature `rooms`: ways of firing a ring, judged by the simulator |
 //!
 //! ```
 //! use eeruf_design::{RingSpec, Effort};

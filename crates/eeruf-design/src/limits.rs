@@ -7,7 +7,7 @@ pub const fn four() -> u8 {
     4
 }
 
-/// Returns true if a ring may have this many sensors.
+/// Checks that a ring may have this many sensors.
 ///
 /// # Errors
 /// The number and what is expected.
@@ -19,7 +19,7 @@ pub fn sensors_in_range(sensors: usize) -> Result<(), String> {
     }
 }
 
-/// Returns true if this many adjacent sensors may be neighbours.
+/// Checks that this many adjacent sensors may be neighbours.
 ///
 /// # Errors
 /// The number and what is expected.
@@ -35,7 +35,7 @@ pub(crate) fn number(name: &str, value: f64, least: f64, most: f64) -> Result<f6
     if (least..=most).contains(&value) {
         Ok(value)
     } else {
-        // Its likely cause is what makes a value implausible.
+        // The likely cause is the one for which a value is implausible.
         let why = eeruf_files::doubt(name, value).and_then(|doubt| Some(format!("; {}", doubt.rsplit_once("; ")?.1)));
         Err(format!("{name} = {value}; expected {least} to {most}{}", why.unwrap_or_default()))
     }

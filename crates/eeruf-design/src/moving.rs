@@ -4,7 +4,7 @@
 //! `dt` of a schedule is `T_p + max |d|`. So a longer period needs a larger separation, and a schedule for one period
 //! need not serve at a longer one. A refutation covers a *region* of periods and of `max |d|`:
 //!
-//! - every schedule in it needs the `t_delta` of its shortest period and its smallest `max |d|` at least;
+//! - every schedule in it needs at least the `t_delta` of the region's shortest period and smallest `max |d|`;
 //! - every schedule in it, run at the longest period, leaves each sensor the longest period less the largest `max |d|`
 //!   between two firings.
 //!
@@ -129,7 +129,7 @@ impl<'s> Moving<'s> {
         let upper = self.climb(&lower, control)?;
         let (best, bound, reason) = if lower.found.proven {
             let least = bound.map_or(1, |bound| self.ticks(bound));
-            // Without any schedule so far, one that is twice as long as the bound would do.
+            // Without any schedule so far, one twice as long as the bound would do.
             let end = upper.map_or(least.saturating_mul(2), |schedule| self.ticks(schedule.period()));
             self.between(least, end, upper, &lower.reason, control)?
         } else {
@@ -142,8 +142,8 @@ impl<'s> Moving<'s> {
         let (mut schedule, mut to_spare) = (schedule, None);
         let mut certifiable = (bounding, lower.found.bound);
         if proven {
-            // Most are the shortest for their own t_delta too. That can be certified, and of those that are as short
-            // the preferred one is known.
+            // Most schedules are the shortest for their own t_delta too. That can be certified, and the preferred one
+            // among equally short ones is known.
             let own = self.standing(&needs, "", control)?;
             if own.found.proven && own.found.value == value {
                 certifiable = (needs.clone(), value);
@@ -175,7 +175,7 @@ impl<'s> Moving<'s> {
         if self.spec.t_delta_needed(&preferred) <= needs.t_delta {
             return Ok((preferred, spare));
         }
-        // It fires less evenly. Of those that fire as evenly as this one, only the best found is known.
+        // That schedule fires less evenly; among those that fire as evenly as this one, the best found counts.
         let capped = needs.refiring_after(schedule.min_refire());
         let (preferred, spare) = capped.problem().prefer(&schedule, SPARE_BUDGET, control)?;
         Ok((preferred, ToSpare { proven: [false; 3], ..spare }))

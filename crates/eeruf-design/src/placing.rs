@@ -9,7 +9,7 @@ use crate::places::Places;
 use crate::ring::{PlaceFile, RingFile};
 
 impl RingFile {
-    /// The places of the ring's sensors. A URDF is looked for beside `file`, the ring file.
+    /// The places of the ring's sensors. A URDF is looked up beside `file`, the ring file.
     pub(crate) fn places(&self, file: Option<&Path>) -> Result<Places, String> {
         let base_height_m = self.base_height_m.map(|m| number("base_height_m", m, 0.0, 100.0)).transpose()?;
         let (key, mut places) = match (&self.poses, self.spacing_deg, self.radius_m, &self.urdf, &self.links) {

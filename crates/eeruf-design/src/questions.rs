@@ -60,10 +60,10 @@ pub const CURVE_POINTS: u32 = 20;
 pub const CURVE_BUDGET: u64 = 20_000;
 
 impl RingSpec {
-    /// Decides if a schedule of this period meets the ring's needs, and finds the largest `t_delta` that fits.
+    /// Decides whether a schedule of this period meets the ring's needs, and finds the largest `t_delta` that fits.
     ///
     /// # Errors
-    /// [`SearchError`] for a period that is no whole number of ticks, and as for [`shortest`](Self::shortest).
+    /// [`SearchError`] for a period that is not a whole number of ticks, and as for [`shortest`](Self::shortest).
     pub fn fit(&self, period: Micros, budget: u64, control: &mut impl Control) -> Result<Fit, SearchError> {
         let ticks = self.problem().in_whole_ticks(period)?;
         let search = Effort { budget, what_if: false, atlas: "" };
@@ -83,7 +83,7 @@ impl RingSpec {
             fit.schedule = Some(schedule);
             fit.t_delta = match self.uneven {
                 Some(_) => Some(needs.t_delta.saturating_add(spare.t_delta)),
-                // A need that was rounded up to ticks leaves more than whole ticks.
+                // Rounding needs up to ticks leaves slack besides whole ticks.
                 None => schedule.verify(&needs.problem().requirements).max_t_delta(),
             };
             if spare.proven[0] {
@@ -99,7 +99,7 @@ impl RingSpec {
         if self.handling > Micros::ZERO && fit.fits == Some(true) {
             fit.schedule = fit.schedule.and_then(|schedule| self.moved_apart(&schedule));
             fit.t_delta = fit.schedule.and_then(|apart| apart.verify(&self.problem().requirements).max_t_delta());
-            // That of the ways which were tried.
+            // The largest among the attempts, without a proof.
             fit.proven = false;
             if fit.schedule.is_none() {
                 fit.fits = None;
@@ -132,7 +132,7 @@ impl RingSpec {
                 Err(NoDesign::Search(error)) => return Err(error),
                 Err(none) => point.proven = none == NoDesign::TooFast,
             }
-            // What more of a need takes is no shorter.
+            // A period for more of a need is never shorter.
             let before = points.last().and_then(|last| last.bound);
             point.bound = point.bound.max(before);
             point.proven |= point.period.is_some() && point.period == point.bound;

@@ -17,15 +17,15 @@ impl RingSpec {
     /// Reads the text of a ring file that names no URDF.
     ///
     /// # Errors
-    /// The first thing wrong with it.
+    /// The first error in the text.
     pub fn from_text(text: &str) -> Result<Self, FileError> {
         build(text, |ring: RingFile| checked(&ring, None))
     }
 
-    /// Reads the text of a ring file at this path. A URDF that it names is looked for beside it.
+    /// Reads the text of a ring file at this path. A URDF that it names is looked up beside it.
     ///
     /// # Errors
-    /// The first thing wrong with it, in the file.
+    /// The first error in the text, with the file's name.
     pub fn in_file(file: &Path, text: &str) -> Result<Self, FileError> {
         build(text, |ring: RingFile| checked(&ring, Some(file))).map_err(|error| error.in_file(file))
     }
@@ -34,7 +34,7 @@ impl RingSpec {
 /// The robot of a ring file in a scene, as `eeruf_sim::World::from_text_with` reads one.
 ///
 /// # Errors
-/// The first thing wrong with it.
+/// The first error in the text.
 ///
 /// ```
 /// let text = "sensors = 2\nmodule = \"ping\"\njitter_us = 100\nmin_interval_us = 0\nspacing_deg = 30\nradius_m = 0.2";

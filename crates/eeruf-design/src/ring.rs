@@ -116,19 +116,19 @@ pub struct RingSpec {
     pub window: Micros,
     /// The range to see, as an echo time and without the rest between triggers; the longest if sensors have their own.
     pub listening: Micros,
-    /// True if that range comes from the modules, not from the file.
+    /// True if `listening` comes from the modules, not from the file.
     pub sees_by_module: bool,
     /// Least time between two triggers, if all sensors are alike; zero if they have their own.
     pub retrigger: Micros,
     /// True if a sensor's own echo from the period before must be rejected too.
     pub stale_echo: bool,
-    /// True if only the modules require that.
+    /// True if only the modules require `stale_echo`.
     pub stale_echo_by_module: bool,
     /// The speed of sound.
     pub c: SpeedOfSound,
     /// The change that `t_delta` must cover on a robot that stands; the largest if sensors have their own.
     pub t_delta: Micros,
-    /// Speed of the robot, in mm/s, if `t_delta` must cover that too.
+    /// Speed of the robot, in mm/s, if `t_delta` must cover its motion too.
     pub speed_mm_s: Option<u32>,
     /// The time that the controller needs for one firing; it makes closer firings one after the other.
     pub handling: Micros,
@@ -137,7 +137,7 @@ pub struct RingSpec {
     pub path_change: Option<Micros>,
     /// R: how long sound is audible, if the file gives it.
     pub audible: Option<Micros>,
-    /// True if other robots may be about, whose firings are unknown.
+    /// True if other robots, whose firings are unknown, may be near.
     pub others: bool,
     /// True if the file says that other robots are near.
     pub meets_others: bool,
@@ -198,7 +198,7 @@ impl RingSpec {
         let requirements = self.problem().requirements;
         let limits = (0..self.sensors).map(|sensor| SensorLimits {
             t_delta: requirements.t_delta_of(sensor),
-            // What only keeps a module from being triggered is no time to listen.
+            // A rest before the next trigger is not listening time.
             window: requirements.window_of(sensor).min(self.listening),
         });
         RobotRing {
@@ -310,7 +310,7 @@ impl RingFile {
         let is_uneven = are_lists || pairs;
         let largest = |times: &[Micros]| times.iter().copied().max().unwrap_or_default();
         let largest_t_delta = largest(&t_delta);
-        // Where all are alike they listen until they may be triggered again.
+        // If all sensors are alike, they listen until they may be triggered again.
         let largest_window = if is_uneven { largest(&window) } else { largest(&window).max(largest(&refire)) };
         if largest_window == Micros::ZERO || (is_uneven && window.contains(&Micros::ZERO)) {
             return Err("a listening window of 0 us; expected window_us or max_range_m above zero".to_owned());

@@ -82,11 +82,11 @@ pub struct RoomsAnswer {
     pub assumed: Vec<String>,
     /// The robot's speed in m/s.
     pub speed_m_s: f64,
-    /// The largest share of foreign sound that was asked for.
+    /// The requested limit of the share of foreign sound.
     pub wrong: f64,
     /// Judgements under other conditions, in a third of the rooms; fewer than three if the judging was stopped.
     pub elsewhere: Vec<(Condition, Judgement)>,
-    /// The ways compared by cost, if it was [asked for](RingSpec::cost_in_rooms).
+    /// The ways compared by cost, if [requested](RingSpec::cost_in_rooms).
     pub by_cost: Option<CostAnswer>,
 }
 
@@ -99,7 +99,7 @@ const LESS_ELSEWHERE: usize = 3;
 const STUDY_BUDGET: u64 = 200_000;
 
 impl RingSpec {
-    /// The speed at which its robot drives through rooms, in m/s: the ring's, or 0.3, a choice.
+    /// The speed at which the ring's robot drives through rooms, in m/s: the file's, or else 0.3, a choice.
     pub fn room_speed_m_s(&self) -> f64 {
         self.speed_mm_s.filter(|&mm| mm > 0).map_or(USUAL_SPEED_M_S, |mm| f64::from(mm) / 1e3)
     }
@@ -122,7 +122,7 @@ impl RingSpec {
     /// judgement stops.
     ///
     /// # Errors
-    /// A ring without places, no room, and if it was stopped before the first judgement was complete, in words.
+    /// A ring without places, no rooms, or a stop before the first judgement was complete, in words.
     pub fn judge_in_rooms(
         &self,
         design: Option<&RingDesign>,
@@ -153,7 +153,7 @@ impl RingSpec {
 
 impl RingSpec {
     /// The way of firing the ring that [`judge_in_rooms`](Self::judge_in_rooms) recommends among those that a program
-    /// can have, without judging other conditions; `None` if no way can fire it.
+    /// can use, without judging other conditions; `None` if no way can fire it.
     ///
     /// # Errors
     /// See [`judge_in_rooms`](Self::judge_in_rooms).
@@ -170,7 +170,7 @@ impl RingSpec {
     }
 
     fn set(&self, design: Option<&RingDesign>, asked: &RoomsAsked) -> Result<Set, String> {
-        // With the T_delta that the schedule needs where the robot moves.
+        // With the T_delta that the schedule needs if the robot moves.
         let spec = design.map_or(self, |design| &design.spec);
         let RoomRobot { robot, assumed } = spec.room_robot()?;
         let here = RoomsOptions {
@@ -201,7 +201,7 @@ fn in_words(error: ExperimentError) -> String {
 }
 
 impl RoomsAnswer {
-    /// The answer as JSON has it.
+    /// The answer in its JSON form.
     pub fn json(&self) -> RoomsJson<'_> {
         let ways = |judgement| ways_of(&self.groups, judgement);
         let elsewhere = self.elsewhere.iter().map(|(condition, judgement)| ElsewhereJson {

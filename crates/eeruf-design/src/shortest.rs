@@ -28,16 +28,16 @@ impl Default for Effort {
     }
 }
 
-/// The shortest period, and the schedule to prefer.
+/// The shortest period, and the preferred schedule.
 #[derive(Clone, Debug)]
 pub struct FoundPeriod {
     /// The shortest period, or the best found, with the first schedule that has it.
     pub found: Found<MAX_SENSORS>,
-    /// The schedule to prefer.
+    /// The preferred schedule.
     pub schedule: AnySchedule,
     /// Reason why the period is not shorter, in words.
     pub reason: String,
-    /// Slack of that schedule, if the period is proven: no other schedule with this period has more.
+    /// Slack of the schedule, if the period is proven: no other schedule with this period has more.
     pub to_spare: Option<ToSpare>,
     /// True if period and schedule come from the atlas, and nothing was searched.
     pub from_atlas: bool,
@@ -48,7 +48,7 @@ pub struct FoundPeriod {
 /// Finds the shortest period; `what_if` does not matter here.
 ///
 /// # Errors
-/// [`SearchError`] for needs that make no sense or are too large to search.
+/// [`SearchError`] for needs that are invalid or too large to search.
 pub fn shortest(
     problem: &PeriodProblem<'_>,
     search: &Effort,

@@ -21,7 +21,7 @@ impl OwnedUneven {
     /// those of the requirements.
     ///
     /// # Errors
-    /// The first invalid thing.
+    /// The first invalid value.
     pub fn new(
         sensors: usize,
         [t_delta, window, refire]: [Vec<Micros>; 3],
@@ -47,7 +47,7 @@ impl OwnedUneven {
             RequirementsError::PairTwice { pair: (x, y) } => {
                 format!("intervals_us: sensors {x} and {y} twice; expected each pair once")
             }
-            // As the file counts them.
+            // Sensors are counted as in the file.
             error => format!("{error:#}"),
         })?;
         Ok(owned)
@@ -81,7 +81,7 @@ impl OwnedUneven {
         Self { t_delta: self.t_delta.iter().map(|t_delta| other(*t_delta)).collect(), ..self.clone() }
     }
 
-    /// Returns the needs with other windows; sensors are triggered again as soon as before.
+    /// Returns the needs with other windows, and unchanged refire times.
     pub(crate) fn with_windows(&self, other: impl Fn(Micros) -> Micros) -> Self {
         Self { window: self.window.iter().map(|window| other(*window)).collect(), ..self.clone() }
     }
@@ -91,10 +91,10 @@ impl OwnedUneven {
         (!self.shared_lines.is_empty()).then(|| Self { shared_lines: Vec::new(), ..self.clone() })
     }
 
-    /// Returns true if no two sensors that fire together must keep a time between their firings.
+    /// Checks that no two sensors that fire together must keep a time between their firings.
     ///
     /// # Errors
-    /// The two that must.
+    /// Two sensors that must.
     pub fn can_fire_together(requirements: &Requirements<'_>, sensors: usize) -> Result<(), String> {
         for (x, y) in (0..sensors).flat_map(|x| (x + 1..sensors).map(move |y| (x, y))) {
             let gap = requirements.gap_after(sensors, x, y).max(requirements.gap_after(sensors, y, x));

@@ -1,5 +1,5 @@
 //! Places of sensors from a robot's URDF: along the fixed joints between its base and the sensors' links, each of which
-//! looks along its x axis, as `sensor_msgs/Range` has it.
+//! looks along its x axis, as in `sensor_msgs/Range`.
 
 use std::path::Path;
 
@@ -105,7 +105,7 @@ impl Urdf<'_> {
     fn joints_above<'a>(&'a self, link: &'a str) -> (Vec<&'a Joint>, &'a str) {
         let (mut joints, mut at) = (vec![], link);
         while let Some(joint) = self.robot.joints.iter().find(|joint| joint.child.link == at) {
-            // A robot that closes a circle.
+            // The robot's joints form a loop.
             if joints.len() == self.robot.joints.len() {
                 break;
             }
@@ -256,7 +256,7 @@ mod tests {
             )
         };
         assert_eq!(answer(&linked), answer(&listed));
-        // Their heights count.
+        // The heights of the sensors count.
         let higher = RingSpec::from_text(&format!("{RING}{}", places.replace("0.08", "1.0"))).unwrap();
         assert_ne!(answer(&linked).3, answer(&higher).3);
     }
@@ -336,7 +336,7 @@ mod tests {
         assert!(error.starts_with("line 4: urdf = \"robot.urdf\" is looked for beside the ring file"), "{error}");
     }
 
-    // A joint whose parent is below it makes no endless walk.
+    // A joint whose parent is below it does not cause an endless loop.
     #[test]
     fn robot_that_closes_a_circle_ends() {
         let circle = r#"<robot name="c"><link name="base_link"/><link name="a"/><link name="b"/>

@@ -11,11 +11,11 @@ use serde::Serialize;
 use crate::flow::FlowDesign;
 use crate::ring::RingSpec;
 
-/// A way of firing that a program for a board can have. All but two phases are settings of one ring,
+/// A way of firing that a program for a board can use. All except two phases are settings of one ring,
 /// [`FlowRing`](eeruf_core::flow::FlowRing).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Way {
-    /// One sensor after the other, each when the sound of the one before has died; every echo is believed.
+    /// One sensor after the other, each when the previous sound has died away; every echo is believed.
     Sequential,
     /// Groups of sensors that are not neighbours, group after group; every echo is believed.
     Groups,
@@ -131,7 +131,7 @@ impl RingSpec {
         }))
     }
 
-    /// The settings for firing its robot, as judged in rooms, one by one, in groups or by flow, with this seed of the
+    /// The settings for firing the robot one by one, in groups or by flow, as judged in rooms, with this seed of the
     /// random gaps.
     ///
     /// # Errors

@@ -90,7 +90,7 @@ fn less(time: Micros, tick: Micros) -> Micros {
 /// neighbour.
 fn relaxed_alike<'r>(problem: &PeriodProblem<'r>) -> Vec<(String, Requirements<'r>)> {
     let Requirements { t_delta, min_interval, window, layout, .. } = problem.requirements;
-    // In whole ticks, as others are rounded up to them.
+    // In whole ticks, since other times are rounded up to them.
     let less = |time: Micros| less(time, problem.tick);
     let (shorter, listening) = (less(min_interval), less(window));
     let separation = less(problem.requirements.separation()).as_micros();

@@ -48,7 +48,7 @@ fn no_row_is_longer_than_its_construction() {
     }
 }
 
-// A proven row is the answer to its ring and an open one is none.
+// A proven row is the answer for its ring, and an open one is not.
 #[test]
 fn proven_row_answers_and_open_one_does_not() {
     for row in rows(ATLAS) {
@@ -57,7 +57,7 @@ fn proven_row_answers_and_open_one_does_not() {
     }
 }
 
-// What counting says of a ring is below every schedule that is known.
+// The bound by counting is below every known schedule of a ring.
 #[test]
 fn no_schedule_is_shorter_than_counted_bounds() {
     for row in rows(ATLAS) {
@@ -85,7 +85,7 @@ fn sample_of_atlas_is_proven_again() {
             assert_eq!((found.value, found.proven), (Some(Micros::from_millis(row.period)), true), "{row}");
             proven += 1;
         } else {
-            // Whatever another search comes to, it does not contradict.
+            // The result of another search does not contradict the row.
             assert!(found.bound <= Some(Micros::from_millis(row.period)), "{row}");
             assert!(found.value >= Some(Micros::from_millis(row.bound)), "{row}");
         }

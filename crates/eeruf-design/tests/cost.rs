@@ -16,7 +16,7 @@ fn ring_is_judged_as_its_file_says_that_it_is_used() {
     let under = |answer: &CostAnswer| answer.kinds[0].best.iter().map(|best| best.condition).collect::<Vec<_>>();
     assert_eq!(under(&alone), ["standing", "driving", "turning"]);
     assert_eq!((alone.speed_m_s, alone.turn_deg_s), (0.5, 45.0));
-    // One by one is what all are measured by.
+    // All kinds are measured against one by one.
     let kinds: Vec<_> = alone.kinds.iter().map(|kind| &*kind.kind).collect();
     assert_eq!(kinds, ["one by one", "groups", "two phases", "flow"]);
     assert_eq!(alone.kinds[0].cost.map(|cost| cost.value), Some(1.0));

@@ -50,7 +50,7 @@ fn ring_file_of_mixed_sensors_fires_by_flow() {
     for (sensor, (kinds, fired)) in kinds.iter().zip(&fired).enumerate() {
         let last = if matches!(sensor, 2 | 3) { ReadingKind::Clear } else { ReadingKind::Accepted };
         assert!(kinds[8..FIRINGS - 1].iter().all(|kind| *kind == last), "{sensor}: {kinds:?}");
-        // The module that rests for longest says how soon all fire again.
+        // The module with the longest rest decides how soon all fire again.
         let soonest = fired.windows(2).map(|pair| pair[1].since(pair[0])).min().unwrap();
         assert!(soonest >= Micros::from_millis(70), "{sensor}: {soonest}");
     }

@@ -126,7 +126,7 @@ fn robot_that_is_too_fast_gets_no_schedule() {
 
 #[test]
 fn slow_ring_of_ten_is_not_called_shortest_too_early() {
-    // Its t_delta depends on the largest |d|: a schedule of 32.4 ms was called the shortest once, and 32.3 ms serves.
+    // The ring's t_delta depends on the largest |d|: 32.4 ms was once called the shortest period, and 32.3 ms serves.
     let spec = RingSpec::from_text(
         "sensors = 10\nneighbours = 4\nlayout = \"line\"\njitter_us = 0\nspeed_m_s = 0.197\nmin_interval_us = 8000\n\
          window_us = 14_000\ntick_us = 100\n",

@@ -55,7 +55,7 @@ fn uneven_rings_are_verified_and_certified() {
 
 #[test]
 fn uneven_schedule_with_most_to_spare_is_chosen() {
-    // So much more of each need than the ring has, in microseconds.
+    // The ring with each need increased by this much, in microseconds.
     let ring = |t_delta: u32, interval: u32, refire: u32| {
         let t_deltas = [999, 499, 499, 499, 499].map(|us| us + t_delta);
         read(&format!(
@@ -135,7 +135,7 @@ fn sensors_listen_for_range_and_wait_for_retrigger() {
     assert_eq!(requirements.window_of(0), uneven.c.echo_time(1000));
     assert_eq!(requirements.refire_of(0), Micros::from_millis(40));
     assert!(design(&uneven).schedule.min_refire() >= Micros::from_millis(40));
-    // Where all are alike they may as well listen until then.
+    // If all sensors are alike, they may as well listen until then.
     assert_eq!(read(&format!("{text}max_range_m = 2.0")).window, Micros::from_millis(40));
 }
 

@@ -7,10 +7,10 @@
 //! | To .. | there is |
 //! |---|---|
 //! | find the shortest period | [`PeriodProblem::shortest`] |
-//! | know if a period can be kept | [`PeriodProblem::decide`] |
+//! | decide whether a period is possible | [`PeriodProblem::decide`] |
 //! | choose among the schedules of a period | [`PeriodProblem::prefer`] |
 //! | find the largest `t_delta` of a period | [`PeriodProblem::largest_t_delta`] |
-//! | say why nothing is shorter | [`ShortestPeriod::reason`] |
+//! | explain why nothing is shorter | [`ShortestPeriod::reason`] |
 //! | prove it to others | [`PeriodProblem::claim`], [`engine::prove`] |
 //!
 //! The outcome, the watcher and the errors of a search are those of [`eeruf_core::search`]. The same question has the

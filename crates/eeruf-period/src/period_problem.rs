@@ -57,7 +57,7 @@ impl ShortestPeriod {
         self.schedule.period()
     }
 
-    /// True if no schedule has a shorter one.
+    /// True if no schedule has a shorter period.
     #[must_use]
     pub fn proven(&self) -> bool {
         self.bound == self.period()
@@ -97,7 +97,7 @@ impl PeriodProblem<'_> {
     /// There is always a schedule, since firing one by one meets all needs except those of sensors that fire together.
     ///
     /// # Errors
-    /// [`SearchError`] for needs that make no sense or are too large to search.
+    /// [`SearchError`] for needs that are invalid or too large to search.
     pub fn shortest(&self, budget: u64, control: &mut impl Control) -> Result<ShortestPeriod, SearchError> {
         let ticks = self.checked()?;
         let mut go_on = |so_far: &SoFar| {
@@ -234,7 +234,7 @@ impl PeriodProblem<'_> {
         Problem {
             tick_us: (tick_us, 1),
             separation: (0..sensors).map(separation).collect(),
-            // A certificate's window is how soon a sensor fires again; for how long it listens is in the gaps.
+            // A certificate's window is the time until a sensor may fire again; listening times are in the gaps.
             window: (0..sensors).map(refire).collect(),
             stale_echo: requirements.stale_echo,
             together: together.iter().map(members).collect(),
@@ -282,7 +282,7 @@ impl PeriodProblem<'_> {
     /// A period in ticks.
     ///
     /// # Errors
-    /// [`SearchError`] if it is not a whole number of ticks, is none, or is too long to be searched.
+    /// [`SearchError`] if the period is not a whole number of ticks, is zero, or is too long to search.
     pub fn in_whole_ticks(&self, period: Micros) -> Result<u32, SearchError> {
         if self.tick == Micros::ZERO {
             return Err(SearchError::NoTick);

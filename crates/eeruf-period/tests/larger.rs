@@ -1,9 +1,9 @@
-//! A brute force over firing times judges the search: shortest periods, decisions near them and elsewhere, and
-//! preferences, of random rings of up to six sensors that are alike, and 40 ticks.
+//! Tests of the search by brute force over firing times: shortest periods, decisions near them and elsewhere, and
+//! preferences, for random rings of up to six identical sensors and 40 ticks.
 //!
-//! It is written from the definition in the documentation of `Problem` and shares nothing with the search. Each sensor
-//! has a set of possible pairs of firing times. Placing one sensor removes the pairs of others that no longer fit; the
-//! sensor with the fewest pairs is next.
+//! The brute force follows the definition in the documentation of `Problem` and shares nothing with the search. Each
+//! sensor has a set of possible pairs of firing times. Placing one sensor removes the pairs of others that no longer
+//! fit; the sensor with the fewest pairs is next.
 //!
 //! `EERUF_BRUTE_FORCE=10000` judges this many problems instead of 200 in each test, and `EERUF_BRUTE_FORCE_SEED` draws
 //! others.
@@ -20,7 +20,7 @@ use eeruf_period::engine::search::{Decided, FiringTimes, Search};
 use eeruf_period::engine::spare::most_to_spare;
 use solver::{MOST_TICKS, Needs, brute_force};
 
-/// A budget that suffices for all questions here; a broken search ends, too.
+/// A budget that suffices for all questions here, and ends a broken search too.
 const BUDGET: u64 = 1_000_000;
 
 /// A random line, ring, set of blocks or graph, with up to five neighbours.

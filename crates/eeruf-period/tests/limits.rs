@@ -11,7 +11,7 @@ use eeruf_core::search::{Progress, SearchError};
 use eeruf_core::{Criterion, Layout, Micros, Requirements};
 use eeruf_period::PeriodProblem;
 
-/// A budget that suffices for all questions here; a broken search ends, too.
+/// A budget that suffices for all questions here, and ends a broken search too.
 const BUDGET: u64 = 1_000_000;
 
 const NEEDS: Requirements<'static> = Requirements {
@@ -121,7 +121,7 @@ fn sixty_four_sensors_in_one_clique_fire_one_after_the_other() {
     assert_serves(&problem, found.period, &found.fire);
 }
 
-// An interval between neighbours that there are none of makes no search too long.
+// An interval between neighbours does not make a search too long if there are no neighbours.
 #[test]
 fn interval_without_neighbours_makes_no_long_search() {
     let requirements = Requirements { layout: Layout::Line(1), ..NEEDS };

@@ -1,4 +1,4 @@
-"""Proves claims with a checker's own rules, by branching on whatever is open: prove.py CHECKER FOLDER COUNT MOST HOW
+"""Prove claims with a checker's own rules, by branching on whatever is open: prove.py CHECKER FOLDER COUNT MOST HOW
 
 FOLDER has the heads of COUNT certificates, named by numbers; proofs get the ending .proof. Ends after MOST proofs. HOW
 is `orders`, or `time` for counting and branchings along time.

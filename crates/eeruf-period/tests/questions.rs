@@ -3,7 +3,7 @@
 use eeruf_core::{Layout, Micros, Requirements};
 use eeruf_period::{PeriodProblem, ToSpare};
 
-/// A budget that suffices for all questions here; a broken search ends, too.
+/// A budget that suffices for all questions here, and ends a broken search too.
 const BUDGET: u64 = 1_000_000;
 
 const fn ms(ms: u32) -> Micros {

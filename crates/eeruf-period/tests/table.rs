@@ -13,7 +13,7 @@ fn the_periods_of_the_table_have_a_certificate_that_is_accepted() {
     for (name, claim) in common::table(1) {
         let certificate = prove(&claim, 100_000).unwrap_or_else(|error| panic!("{name}: {error}"));
         assert_eq!(claim_of(&certificate), claim);
-        // With one line less it is no proof.
+        // Without one of its lines, it is not a proof.
         let mut lines: Vec<&str> = certificate.lines().collect();
         lines.remove(lines.len() - 2);
         if nodes_of(&certificate) > 1 {

@@ -5,7 +5,7 @@ mod alike;
 
 use alike::{Alike, Layout, assert_serves, conflicts, paper_12};
 
-/// A budget that suffices for all questions here; a broken search ends, too.
+/// A budget that suffices for all questions here, and ends a broken search too.
 const BUDGET: u64 = 1_000_000;
 
 // The half ring of twelve runs at 65 ms and also in microseconds.
@@ -20,7 +20,7 @@ fn half_ring_of_twelve_runs_at_65_ms() {
     }
 }
 
-// A tick of a microsecond needs little more nodes than one of a millisecond.
+// A tick of a microsecond needs only a few more nodes than one of a millisecond.
 #[test]
 fn microsecond_ticks_need_few_more_nodes() {
     let rows = conflicts(Layout::Ring, 8, 4);

@@ -6,7 +6,7 @@ use core::str::FromStr;
 use eeruf_core::{Layout, MAX_SENSORS, Micros, Requirements};
 use eeruf_period::PeriodProblem;
 
-/// Which sensors are neighbours.
+/// The sensors that are neighbours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Neighbourhood {
     /// All sensors are neighbours, as in any short line or ring.
@@ -22,13 +22,13 @@ pub enum Neighbourhood {
 pub struct Ring {
     /// Number of sensors.
     pub sensors: u8,
-    /// Which sensors are neighbours.
+    /// The sensors that are neighbours.
     pub neighbourhood: Neighbourhood,
     /// Least difference of the refire times of any two: the smallest number of ticks above `2 t_delta`.
     pub separation: u32,
     /// Interval between firings of neighbours.
     pub interval: u32,
-    /// Listening time of each.
+    /// Listening time of each sensor.
     pub window: u32,
 }
 
@@ -40,7 +40,7 @@ const NEIGHBOURS: core::ops::RangeInclusive<u8> = 2..=6;
 const SEPARATIONS: [u32; 2] = [1, 2];
 /// The paper's 15 ms.
 const INTERVAL: u32 = 15;
-/// Windows of an HC-SR04 up to 4 m; the paper's 30 ms; an HC-SR04 until it releases its line; modules that fire 20
+/// Windows, in order: an HC-SR04 up to 4 m; the paper's; an HC-SR04 until it releases its line; modules that fire 20
 /// times a second; Polaroid's and others that see 11 m.
 const WINDOWS: [u32; 5] = [25, 30, 40, 50, 65];
 
@@ -69,14 +69,14 @@ pub fn all_rings() -> Vec<Ring> {
     rings
 }
 
-/// Returns true if the ring of this number belongs to this shard, of this many; both count from 0.
+/// Returns true if the ring with this number belongs to shard `shard` of `shards`; numbers and shards count from 0.
 #[must_use]
 pub fn is_in_shard(number: usize, shard: usize, shards: usize) -> bool {
     number % shards.max(1) == shard
 }
 
 impl Neighbourhood {
-    /// Neighbourhood of a layout, whatever its name; `None` if the atlas has none.
+    /// Neighbourhood of a layout, whatever its name; `None` if the atlas has no such neighbourhood.
     #[must_use]
     pub fn of(layout: &Layout<'_>, sensors: u8) -> Option<Self> {
         let count = usize::from(sensors);
@@ -97,7 +97,7 @@ impl Neighbourhood {
 }
 
 impl Ring {
-    /// The ring of a problem; `None` if its sensors differ, or if its needs are those of no ring of the atlas.
+    /// The ring of a problem; `None` if its sensors differ, or if no ring of the atlas has its needs.
     #[must_use]
     pub fn of(problem: &PeriodProblem<'_>) -> Option<Self> {
         let PeriodProblem { sensors, requirements, tick } = *problem;

@@ -5,7 +5,7 @@ use crate::engine::problem::MAX_SENSORS;
 /// A bound on a difference of two times, in ticks.
 pub(crate) type Bound = i32;
 
-/// The requirements contradict each other here.
+/// The error that the requirements contradict each other at this node.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Refuted;
 
@@ -19,7 +19,7 @@ pub(crate) struct Bounds {
     onward: Vec<Bound>,
     /// Old contents of changed rows: the bounds, then the row's number.
     log: Vec<Bound>,
-    /// The step in which each row was last logged: once a step is enough.
+    /// The step in which each row was last logged: once per step is enough.
     saved: Vec<u32>,
     step: u32,
     /// Number of changes of the matrix so far, including undone ones.
@@ -28,7 +28,7 @@ pub(crate) struct Bounds {
     changed: [u64; CHANGED],
 }
 
-/// Words for one bit for each row.
+/// Number of words with one bit for each row.
 const CHANGED: usize = (2 * MAX_SENSORS + 1).div_ceil(64);
 
 impl Bounds {
@@ -89,7 +89,7 @@ impl Bounds {
         }
         self.begin_step();
         self.version += 1;
-        // Marks are where all has been concluded.
+        // At a mark, all rules have been applied.
         self.changed = [0; CHANGED];
     }
 

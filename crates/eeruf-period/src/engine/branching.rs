@@ -9,7 +9,7 @@ use crate::engine::turns::place;
 /// A case distinction: one of its cases holds in every schedule. Sensors are those of the merged problem.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Branching {
-    /// In this phase x fires before y, or after it.
+    /// Sensor x fires before y in this phase, or after it.
     Order(usize, usize, usize),
     /// `d_x >= 0`, or `d_x < 0`.
     Sign(usize),
@@ -17,7 +17,7 @@ pub(crate) enum Branching {
     Rank(usize, usize),
     /// `|d_x|` is at most this many ticks, or it is more.
     Split(usize, u32),
-    /// Which of the sensors that have not fired in this phase fires next; case 0 is the first of them.
+    /// The next sensor to fire, among those that have not fired in this phase; case 0 is the first of these.
     Next,
 }
 

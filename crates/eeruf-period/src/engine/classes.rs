@@ -4,8 +4,8 @@ use crate::engine::counting::{Even, members};
 
 /// The least slack of a period for sensors that all conflict, so that all their `|d|` find room.
 ///
-/// Take n sensors that all conflict, in a period `T_p = n I + sigma`, with `R >= I`. Any two firings that follow each
-/// other are I apart, also those of one sensor. If a sensor is the p-th of them in phase a and the q-th in phase b,
+/// Take n sensors that all conflict, in a period `T_p = n I + sigma`, with `R >= I`. Any two consecutive firings
+/// are I apart, even those of one sensor. If a sensor is the p-th of them in phase a and the q-th in phase b,
 /// `n + p - q` such steps lie between its firing in b and the next in a, and `n - p + q` between a and the next b, so
 /// with `c = p - q`
 ///
@@ -15,7 +15,7 @@ use crate::engine::counting::{Even, members};
 ///
 /// Its **class** is `|c|`. As long as `sigma < I` each class has room for as many `|d|` as fit D apart into
 /// `|c| I - sigma ..= |c| I + sigma`, cut off at `least` below and at the `T_p - R` that the window leaves above. The n
-/// values c are how far the places of a permutation move. **Disjoint cliques** share the room of the classes.
+/// values c are the moves of the places of a permutation. **Disjoint cliques** share the room of the classes.
 ///
 /// **Line** (each n adjacent sensors conflict). Sensors i and i + n both conflict with the n - 1 between them, whose
 /// firings leave `2 (n - 1)` gaps, in two periods end to end. A gap with u firings of sensor i and v of sensor i + n in
@@ -25,15 +25,15 @@ use crate::engine::counting::{Even, members};
 /// between by one, in both phases alike.) So c of sensor x depends on `x mod n` alone: *one* permutation for all, and
 /// each of its places needs room for `K / n` sensors, those of the first `K mod n` for one more.
 ///
-/// **Ring**, `K >= 2 n`. The same goes all round, so c depends on `x mod g`, the greatest common divisor of K and n,
+/// **Ring**, `K >= 2 n`. This holds all round, so c depends on `x mod g`, the greatest common divisor of K and n,
 /// and each c is that of a multiple of `n / g` places. Let x and y conflict, x before y in phase b and behind it in a:
 /// `a_x - a_y >= (p_x - p_y) I` and `b_y - b_x >= (q_y - q_x) I`, so `e = d - c I` is no smaller for x than for y. If
-/// `c_x > 0`, somebody in each clique is overtaken so; there is one on either side of x, n sensors apart and so of one
+/// `c_x > 0`, x overtakes such a sensor in each clique; there is one on either side, n sensors apart and so of one
 /// class, and their e differ by D. Hence `e_x >= -sigma + D`, and likewise `e_x <= sigma - D` if `c_x < 0`: in terms of
 /// `|d|` every class but 0 loses D at the lower end.
 ///
-/// **Ring of `K = 2 n`.** Every sensor conflicts with all but the one opposite, and both fire in the same 2 n places of
-/// two periods, of which each takes as long as its two firings are apart. The time from one firing to the next is
+/// **Ring of `K = 2 n`.** Every sensor conflicts with all but the opposite one, and both fire in the same 2 n places of
+/// two periods, each of which is as long as its two firings are apart. The time from one firing to the next is
 /// `T_p + d` or `T_p - d`; of two opposite sensors these times differ by D at least, so the two places that they share
 /// take D together. (If they are next to each other, because the sensor that is last in one phase is first in the next,
 /// then it is I from each firing to the next, and from the first of the four to the last `I + D`.) All n pairs of
@@ -136,13 +136,13 @@ impl Moves {
         Self { each: count / divisor, more: 0, alike: n / divisor }
     }
 
-    /// Returns true if some permutation moves no more sensors by each distance than there is room for, or if that takes
-    /// too long to find out.
+    /// Returns true if some permutation moves no more sensors by each distance than there is room for, or if finding
+    /// out takes too long.
     fn find_room(&self, rooms: &[i32]) -> bool {
         let n = rooms.len();
         let all = u64::MAX >> (64 - n);
         let mut left: Vec<i32> = rooms.iter().map(|room| room / self.each * self.alike).collect();
-        // Where each place goes, and where it may still be tried to go.
+        // The target of each place, and the targets that are still to be tried.
         let (mut to, mut open) = (vec![0; n], vec![all; n]);
         let (mut free, mut from) = (all, 0);
         for _ in 0..STEPS {

@@ -1,10 +1,10 @@
 //! A schedule without any search: an upper bound from the first moment on.
 //!
-//! Sensors get colours, those with a gap between them unlike ones. Phase b fires colour after colour, W apart or as
-//! much later as gaps ask for. Phase a does so in the same order, or with every g colours in reverse; each sensor takes
-//! the soonest time from its colour's turn on that keeps its gaps to those before it, and whose `|d|` is apart from all
-//! before. In the same order, colour by colour, d is a separation times the rank; in reverse the `|d|` lie around
-//! several multiples of W, which takes less where the windows allow such `|d|`. All of these are tried.
+//! Sensors get colours, different ones if there is a gap between them. Phase b fires colour after colour, W apart, or
+//! later if gaps require it. Phase a does so in the same order, or with every g colours in reverse; each sensor takes
+//! the earliest time from its colour's turn on that keeps its gaps to earlier sensors and its `|d|` apart from theirs.
+//! In the same order, colour by colour, d is a separation times the rank; in reverse the `|d|` lie around several
+//! multiples of W, which takes less time if the windows allow such `|d|`. All patterns are tried.
 
 use crate::engine::problem::Merged;
 
@@ -77,7 +77,7 @@ impl Pattern<'_> {
         let b = times[x][1];
         let least = if merged.stale_echo { (merged.separation[x] + 1) / 2 } else { 0 };
         let mut time = from;
-        // Each step leaves behind what was too close.
+        // Each step moves past one conflict.
         'later: loop {
             let size = (time - b).abs();
             if phase == 0 && size < least {

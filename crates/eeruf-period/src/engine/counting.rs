@@ -4,12 +4,12 @@
 //! on its period is a bound on theirs. Write I for that gap, D for the separation, R for the window, and `own = min(I,
 //! R)` for the time that a firing keeps free of the sensor's own next one.
 //!
-//! - **Clique.** w sensors of which each has a gap to each other fire one by one: `T >= (w - 1) I + own`.
+//! - **Clique.** w sensors that all have gaps to each other fire one by one: `T >= (w - 1) I + own`.
 //! - **Density.** At any time at most alpha of the intervals `[t, t + I)` that begin with a firing are open. Each
 //!   sensor keeps at least `I + own` open in two periods: `2 alpha T >= K (I + own)`. Here alpha is the size of the
 //!   largest set without gaps, or a number of cliques that cover all sensors, which is no smaller.
-//! - **Places.** How many |d| fit if density leaves little to spare: [`Pace`].
-//! - **Classes.** How many |d| fit if clique and gap leave little to spare: [`Classes`].
+//! - **Places.** The number of |d| that fit if density leaves little to spare: [`Pace`].
+//! - **Classes.** The number of |d| that fit if clique and gap leave little to spare: [`Classes`].
 
 use crate::engine::classes::{Classes, Kind};
 use crate::engine::problem::Merged;
@@ -43,7 +43,7 @@ pub(crate) fn least_period(merged: &Merged) -> u32 {
     capacity(merged).max(in_sequence(merged)).max(of_even(merged)).max(one_by_one.unwrap_or(1))
 }
 
-/// Some large cliques: each sensor with as many of those after it, cyclically, as have gaps to all before.
+/// Some large cliques: each sensor with those after it, cyclically, that have gaps to all sensors taken before.
 fn cliques(merged: &Merged) -> Vec<u64> {
     let count = merged.count();
     let has_gaps = |x: usize, y: usize| merged.gap[x][y] > 0 && merged.gap[y][x] > 0;
@@ -231,7 +231,7 @@ impl Even {
         Some(Self {
             count: merged.count(),
             rows: merged.neighbours.iter().map(|row| row.iter().fold(0, |set, y| set | 1 << y)).collect(),
-            // Of two sensors the larger counts, so the smallest of all never does.
+            // For two sensors the larger separation counts, so the smallest of all never does.
             separation: separations.get(1).or(separations.first()).copied()?,
             interval,
             window: merged.window.iter().copied().min()?,

@@ -194,7 +194,7 @@ impl Choice {
             }
             before |= 1 << x;
             let Some((_, y, phase)) = best else { continue };
-            // How far y may come after x, and x after y.
+            // The longest times from x to y, and from y to x.
             let after = state.bounds.at(event(x, phase), event(y, phase));
             let before = state.bounds.at(event(y, phase), event(x, phase));
             let first = self.pattern(state, merged, x, y, phase).unwrap_or_else(|| match &mut self.random {

@@ -23,12 +23,12 @@
 //! - The checker reads each assumption about symmetry from the text and verifies it; the engine constructs those that
 //!   turns, reflections and exchanges give, and keeps them as data.
 //! - The checker says which line is wrong and why; the engine only checks that a schedule keeps the needs.
-//! - The checker replays branchings; the engine chooses them, and in a search takes the times at the bounds for a
-//!   schedule as soon as they serve.
-//! - The checker keeps a matrix in one integer for each open node; the engine has one matrix and a log that takes it
-//!   back.
-//! - In a search the engine concludes more: with `State::goes_further` from Hall intervals. A certificate is written
-//!   without, so a mistake there comes out when one is written.
+//! - The checker replays branchings; the engine chooses them, and a search takes the times at the bounds as a schedule
+//!   as soon as they meet all needs.
+//! - The checker keeps a matrix in one integer for each open node; the engine has one matrix and a log that restores
+//!   it.
+//! - With `State::goes_further`, a search concludes more from Hall intervals. Certificates are written without this, so
+//!   a mistake there shows when one is written.
 
 mod bounds;
 mod branching;

@@ -144,7 +144,7 @@ impl Problem {
         self.separation.len()
     }
 
-    /// All its times, in ticks.
+    /// All times of the problem, in ticks.
     pub(crate) fn numbers(&self) -> impl Iterator<Item = u32> + '_ {
         let gaps = self.gaps.iter().flat_map(|&(.., after_x, after_y)| [after_x, after_y]);
         self.separation.iter().chain(&self.window).copied().chain(gaps)
@@ -195,7 +195,7 @@ impl Problem {
         (1..=MOST).contains(&(sensors + pairs)).then_some(raised)
     }
 
-    /// Returns true if all sensors are alike, and all pairs that need a gap.
+    /// Returns true if all sensors are alike, and so are all pairs that need a gap.
     pub(crate) fn is_even(&self) -> bool {
         let alike = |limits: &Vec<u32>| limits.windows(2).all(|pair| pair[0] == pair[1]);
         self.together.is_empty() && self.limits().iter().all(alike)
@@ -241,7 +241,7 @@ impl Problem {
         let pairs = pairs.filter(|&(x, y)| gap[x][y] > 0).collect();
         let neighbours = gap.iter().map(|row| (0..count).filter(|&y| row[y] > 0).collect()).collect();
         let stale_echo = self.stale_echo;
-        // Of two sensors the larger separation counts, so the smallest of all never does.
+        // For two sensors the larger separation counts, so the smallest of all never does.
         let mut ascending = separation.clone();
         ascending.sort_unstable();
         let least_apart = ascending.get(1).or(ascending.first()).copied().unwrap_or(0);

@@ -41,12 +41,12 @@ impl fmt::Display for NoProof {
 
 impl core::error::Error for NoProof {}
 
-/// Writes a certificate of the claim. If the budget or the caller ends the proof too early, it is for the highest bound
-/// that a sixteenth of the budget proves, or, if the caller ended it, the rules alone.
+/// Writes a certificate of the claim. If the budget ends too early, the certificate is for the highest bound that a
+/// sixteenth of the budget proves; if the caller ends the proof, for the highest bound that the rules alone prove.
 ///
 /// # Errors
 ///
-/// See [`NoProof`]: only that the claim is wrong.
+/// [`NoProof`], but only because the claim is wrong.
 pub fn prove_what_can_be(
     claim: &Claim,
     budget: usize,

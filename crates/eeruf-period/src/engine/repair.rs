@@ -1,8 +1,8 @@
-//! Schedules by repair: sensors that break a need move, one at a time, to where they break least.
+//! Schedules by repair: sensors that break a need move, one at a time, to the times at which they break least.
 //!
 //! *Min-conflicts* (Minton, Johnston, Philips and Laird 1992) with *breakout* weights (Morris 1993) of each pair's gaps
-//! and separation: what a move leaves broken weighs more where it gains nothing. A move is the best of all pairs of
-//! times of one sensor: its costs are a sum of three, of either time and of `|d|`, so for each `d` two rows are added.
+//! and separation: needs that a move without gain leaves broken weigh more. A move is to the best pair of times of one
+//! sensor. The cost of a pair is the sum of those of both times and of `|d|`: for each `d` two rows are added.
 
 use crate::engine::construct::Times;
 use crate::engine::descent::Random;
@@ -78,7 +78,7 @@ impl Repair {
     pub(crate) fn step(&mut self, merged: &Merged) -> bool {
         let count = merged.count();
         let broken = |x: &usize| self.broken[*x] > 0 && *x != self.last;
-        // Needs are broken by two, so there is always another.
+        // Two sensors break a need, so there is always another one.
         let drawn = self.random.below((0..count).filter(broken).count() as u32) as usize;
         let Some(x) = (0..count).filter(broken).nth(drawn) else { return true };
         self.weigh(merged, x);

@@ -104,7 +104,7 @@ fn ranks(state: &mut State, merged: &Merged) -> Result<bool, Refuted> {
         members(state.below[y]).for_each(|x| above[x] |= 1 << y);
     }
     let (mut by_low, mut by_high) = ([0; MAX_SENSORS], [0; MAX_SENSORS]);
-    // As they are now: those that rise below would no longer be in order.
+    // Copies of the present bounds, since bounds that rise below would no longer be in order.
     let mut low = [0; MAX_SENSORS];
     low[..count].copy_from_slice(&state.low);
     let by_low = ascending(&mut by_low, count, |x| -low[x]);

@@ -185,7 +185,7 @@ impl Search {
         go_on: &mut dyn FnMut(u64) -> bool,
     ) -> Decided {
         let end = self.nodes.saturating_add(budget);
-        // What was known where cases are left, and these.
+        // The states with cases left, and these cases.
         let mut open: Vec<(Mark, Vec<Case>)> = Vec::new();
         let along: Vec<usize> = (0..self.merged.count()).collect();
         let mut holds = true;
@@ -200,7 +200,7 @@ impl Search {
                         (0..branching.cases(state)).rev().map(|case| Case::Of(branching, case)).collect()
                     }),
                 };
-                // Nothing left to branch on is a schedule too, in whole ticks.
+                // With nothing left to branch on, the times above are a schedule, if ticks are whole.
                 let Some(cases) = cases else { return Decided::Open };
                 open.push((state.mark(), cases));
             }

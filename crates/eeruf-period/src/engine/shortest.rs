@@ -41,7 +41,7 @@ pub struct SoFar {
 pub fn shortest(problem: &Problem, budget: u64, go_on: &mut dyn FnMut(&SoFar) -> bool) -> Option<Shortest> {
     let mut run = Run::new(problem, true)?;
     run.limit = budget;
-    // Stopped or not, what was found counts.
+    // The result counts even if the search was stopped.
     _ = run.search(go_on);
     let nodes = run.nodes();
     Some(Shortest { nodes, without_cases: run.found.period == run.bound_of_rules, ..run.found })
@@ -61,7 +61,7 @@ const REPAIRS: u64 = 4;
 struct Run {
     search: Search,
     found: Shortest,
-    /// The search ends at this many nodes.
+    /// Number of nodes at which the search ends.
     limit: u64,
     /// True if the schedule came from a search, so that it is worth following.
     is_guide: bool,
@@ -152,7 +152,7 @@ impl Run {
 
     /// One round: the open part of the coarse problem and of the even ring, then the problem itself.
     fn round(&mut self, effort: u64, ask: Ask<'_>) -> Result<(), Stopped> {
-        // Where few limits differ, the rings beside have the schedules.
+        // If only few limits differ, the helper searches find the schedules.
         if self.is_mixed {
             self.repair(REPAIRS * effort, ask)?;
         }
@@ -163,7 +163,7 @@ impl Run {
             let found = self.found.clone();
             let best = coarse.found.period;
             let round = coarse.round(effort, &mut |nodes, _| ask(before + nodes, &found));
-            // What coarse ticks find serves in fine ones too. Where fine ones gain anything it is little.
+            // A schedule in coarse ticks serves in fine ones too, which gain little or nothing.
             if coarse.found.period < best {
                 let times = |times: &Vec<u32>| times.iter().map(|time| time * ticks).collect();
                 self.offer(coarse.found.fire.each_ref().map(times), coarse.is_guide);
@@ -302,7 +302,7 @@ impl Run {
     /// The highest bound that follows without branching: by bisection, since longer periods are no harder.
     fn bound_by_rules(&mut self) {
         let (mut open, mut middle) = (self.found.period, self.found.bound);
-        // Most often counting has said as much.
+        // Usually counting has already given this bound.
         while self.found.bound < open {
             if self.search.is_refuted(middle) {
                 self.found.bound = middle + 1;

@@ -4,7 +4,7 @@
 use crate::engine::problem::Problem;
 use crate::engine::search::{Decided, FiringTimes, Search};
 
-/// A schedule that keeps more than the problem asks for.
+/// A schedule that keeps more than the problem requires.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Spare {
     /// The firing times.
@@ -67,7 +67,7 @@ fn grow(
     let mut step = 1;
     let mut effort = 8 * Search::new(problem).depth();
     loop {
-        // What these times keep anyway.
+        // The slack that these times have anyway.
         while spare.more[need] < most && harder(problem, with(spare.more, need, 1)).is_kept_by(period, &spare.fire) {
             spare.more[need] += 1;
         }
@@ -80,7 +80,7 @@ fn grow(
         let mut search = Search::new(&harder);
         let before = spare.nodes;
         let mut ask = |nodes| go_on(before + nodes);
-        // A full search where it is one tick: only that proves anything.
+        // A full search for a step of one tick, since only that proves anything.
         let decided = if by == 1 {
             match search.find(period, (effort / 2).min(left), left, Some(&spare.fire), &mut ask) {
                 Decided::Open => search.decide(period, effort.min(left), &mut ask),

@@ -23,7 +23,7 @@ pub(crate) struct Turns {
 }
 
 impl Turns {
-    /// No firings yet, for a schedule with this period.
+    /// The state before any firing, for a schedule with this period.
     pub(crate) fn new(merged: &Merged, period: i32) -> Self {
         let count = merged.count();
         let (cliques, times) = cover(merged);

@@ -1,11 +1,11 @@
-//! Decides by brute force over firing times if a schedule exists; its only shortcut is to drop pairs that no longer
-//! fit.
+//! Decides by brute force over firing times whether a schedule exists; its only shortcut is to drop pairs of times that
+//! no longer fit.
 
 /// The longest period that is judged.
 pub(crate) const MOST_TICKS: u32 = 40;
 /// Possible times of one sensor: `MOST_TICKS` rows, one for each time in phase a, with a bit for each time in phase b.
 type Times = [u64; MOST_TICKS as usize];
-/// Number of steps after which the brute force leaves a question open; few may be.
+/// Number of steps after which the brute force leaves a question open; few may stay open.
 const MOST_STEPS: u64 = 200_000;
 
 /// The needs of a problem at a period, all signed so that they can be written as in the definition.

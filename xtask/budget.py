@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
 """Lines of the checkout by folder, held against BUDGET: python3 xtask/budget.py [--write]
 
-Code is what is no test, no comment, no docstring and not blank; words are those of Markdown; text is every line of every
-file. Links are not followed. A folder may have at most what its row in BUDGET says, one without a row nothing.
---write lowers rows to what is there, rounded up to the next 50, and raises none: a number goes up by hand, in a commit
-of its own that says what users gain and what was looked at for removal. Every commit that raises one is held to that.
+Code is every line but tests, comments, docstrings and blank lines; words are counted in Markdown; text is every line of
+every file. Links are not followed. A folder may have at most the numbers in its row of BUDGET; without a row, nothing.
+--write lowers rows to the present counts, rounded up to the next 50, and raises none: a number is raised by hand, in a
+commit of its own that says what users gain and what was considered for removal. Every commit that raises one is checked.
 """
 import ast
 import collections
@@ -49,7 +49,7 @@ def python(text):
     lines = {number for number, line in enumerate(text.split("\n"), 1) if line.strip() and line.strip()[0] != "#"}
     try:
         nodes = list(ast.walk(ast.parse(text)))
-    except SyntaxError:  # templates, and Python that this one is too old for
+    except SyntaxError:  # templates, and syntax that is too new for this Python
         return len(lines)
     for node in nodes:
         body = getattr(node, "body", None)
@@ -77,7 +77,7 @@ def counted(name, text):
 
 
 def measured():
-    """Counts by folder, and of all; files that are about to be added are among them."""
+    """Count by folder and in total, including files that are about to be added."""
     rows = collections.defaultdict(collections.Counter)
     for name in git("ls-files", "--cached", "--others", "--exclude-standard").split("\n"):
         path = pathlib.Path(name)
@@ -103,7 +103,7 @@ def parsed(text):
 
 
 def written(rows):
-    """BUDGET with these rows, those with nothing left out."""
+    """Format BUDGET with these rows, except empty ones."""
     folders = sorted((folder for folder in rows if folder != "all" and any(rows[folder].values()))) + ["all"]
     lines = [["folder", *COLUMNS]] + [[folder, *(str(rows[folder][c] or "-") for c in COLUMNS)] for folder in folders]
     lines[0][0] = "# " + lines[0][0]

@@ -8,9 +8,9 @@ import pytest
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Let Ctrl-C reach what is tested: what a shell starts in the background ignores it, and so do its children.
+    """Let Ctrl-C reach the tested processes: one that a shell starts in the background ignores it, and so do its children.
 
-    Small numbers, of which the wheel warns, are usual in tests.
+    Small numbers, about which the wheel warns, are usual in tests.
     """
     config.addinivalue_line("filterwarnings", "ignore::eeruf.EerufWarning")
     if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
@@ -19,7 +19,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 @pytest.fixture(autouse=True)
 def figures_are_closed() -> Iterator[None]:
-    """Close what a test drew, if it drew."""
+    """Close the figures that a test drew, if any."""
     yield
     if "matplotlib.pyplot" in sys.modules:
         sys.modules["matplotlib.pyplot"].close("all")

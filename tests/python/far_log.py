@@ -1,7 +1,7 @@
-"""Reads a log out of a web server by fsspec, in little memory: `python tests/python/far_log.py READINGS`.
+"""Read a log from a web server by fsspec, in little memory: `python tests/python/far_log.py READINGS`.
 
-A table of eight sensors is judged block by block and written as MCAP; the MCAP is read the same way. Prints what was read, how long that
-took, and the largest memory, as JSON; fails if that is more than 200 MB.
+A table of eight sensors is judged block by block and written as MCAP; the MCAP is read the same way. Prints counts, time
+and peak memory as JSON; fails if the peak is more than 200 MB.
 """
 
 import json
@@ -22,7 +22,7 @@ MOST_MB = 200
 
 
 class Ranges(SimpleHTTPRequestHandler):
-    """Gives parts of files, as object stores do."""
+    """A server that gives parts of files, as object stores do."""
 
     protocol_version = "HTTP/1.1"
 
@@ -50,7 +50,7 @@ class Ranges(SimpleHTTPRequestHandler):
 
 
 def write(file: Path, readings: int) -> None:
-    """Echoes that stay for two rows each, in metres with millimetres."""
+    """Write echoes that stay for two rows each, in metres with three decimals."""
     with file.open("w") as out:
         out.write("t_us," + ",".join(f"sonar_{sensor}" for sensor in range(SENSORS)) + "\n")
         for row in range(readings // SENSORS):
@@ -61,7 +61,7 @@ def write(file: Path, readings: int) -> None:
 
 
 def read(url: str, **judging: Any) -> dict[str, Any]:
-    """Read a log, and say what came."""
+    """Read a log, and return counts and time."""
     begun, readings, metres, accepted = time.monotonic(), 0, 0.0, 0
     for block in eeruf.logs.blocks(url, **judging):
         readings += len(block)
@@ -73,14 +73,14 @@ def read(url: str, **judging: Any) -> dict[str, Any]:
 
 
 def largest_mb() -> float:
-    """The largest memory of this program; `ru_maxrss` begins with that of the one that started it."""
+    """Return the peak memory of this program; `ru_maxrss` would begin with that of its parent."""
     found = re.search(r"VmHWM:\s+(\d+) kB", Path("/proc/self/status").read_text())
     assert found is not None
     return round(int(found[1]) / 1024, 1)
 
 
 def main(readings: int) -> None:
-    """Serve from a process of its own, and read here."""
+    """Serve from another process, and read in this one."""
     with tempfile.TemporaryDirectory() as folder:
         write(Path(folder) / "log.csv", readings)
         serve = subprocess.Popen([sys.executable, __file__, "serve", folder], stdout=subprocess.PIPE, text=True)

@@ -1,8 +1,8 @@
-"""Calls everything with anything: `python tests/python/fuzz.py --calls 3000000 --seed 1`.
+"""Call everything with anything: `python tests/python/fuzz.py --calls 3000000 --seed 1`.
 
 Whatever it is given, a call works or raises an `EerufError`, a `TypeError` about its arguments' names, a `MemoryError`, or an `OSError`
-about a file, within seconds; and the process does not grow: what is in use after half of the calls and after all of them
-is compared, when what is no longer needed has been given back to the system. Ends with code 1 if more than `MOST_GROWN` came.
+about a file, within seconds. The process must not grow either: the memory in use after half of the calls and after all of
+them is compared, once unused memory has been given back. The exit code is 1 if it grew by more than `MOST_GROWN`.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ M_ARENA_MAX = -8
 
 
 def keep_one_heap() -> None:
-    """One heap for all threads from now on: of any other malloc_trim keeps the free end, as large as it ever was."""
+    """Use one heap for all threads from now on, since malloc_trim never gives back the free end of any other."""
     libc = ctypes.CDLL(None)
     if hasattr(libc, "mallopt"):
         libc.mallopt(M_ARENA_MAX, 1)
@@ -68,7 +68,7 @@ KEPT_UNTIL_THE_END = tempfile.TemporaryDirectory(prefix="eeruf-fuzz-")
 FOLDER = Path(KEPT_UNTIL_THE_END.name)
 SAVED = io.BytesIO()
 READINGS.save(SAVED)
-# What they bring on first use is no growth.
+# Imports on first use are not growth.
 READINGS.to_pandas(), READINGS.to_polars()
 HANGS_S = 60
 
@@ -131,23 +131,23 @@ class Chance:
         return self.random.choice(["seed", "robots", "sensors", "walls", "noise", "t_delta_us", "progress", "nonsense"])
 
     def small(self, most: int = 4) -> Any:
-        """A number that keeps the work short, or anything that is no large number."""
+        """Return a number that keeps the work short, or anything but a large number."""
         if self.random.random() < 0.6:
             return self.random.randrange(most + 1)
         thing = self.anything()
         return thing if not isinstance(thing, (int, np.integer, float)) or thing != thing or thing < most else -1
 
     def mostly(self, good: Any) -> Any:
-        """Good values, most of the time."""
+        """Return a good value most of the time."""
         return good if self.random.random() < 0.7 else self.anything()
 
     def one_wrong(self, good: dict[str, Any]) -> dict[str, Any]:
-        """Half the time with one thing that is not good."""
+        """Return these arguments, half the time with a bad value for one."""
         wrong = {self.random.choice(list(good)): self.anything()} if self.random.random() < 0.5 else {}
         return {**good, **wrong}
 
     def each(self, good: int, count: int = 4) -> Any:
-        """A number for all sensors or a list with one for each, of any kind and now and then of another length."""
+        """Return a number for all sensors, or a list with one for each, of any kind and sometimes of another length."""
         r = self.random
         near = [
             good + r.choice([0, 0, 0, 1, -1, 500]) for _ in range(r.choice([count, count, count, 0, count + 1, 65]))
@@ -157,14 +157,14 @@ class Chance:
         )
 
     def groups(self) -> Any:
-        """Groups of sensors, as those that share a line or fire together."""
+        """Return groups of sensors, like those that share a line or fire together."""
         good = self.random.choice(
             [None, [(0, 2)], [[0, 1], (2, 3)], [[0, 1, 2, 3]], np.array([[1, 3]]), [(0,)], [(1, 1)]]
         )
         return self.mostly(good)
 
     def uneven(self) -> dict[str, Any]:
-        """Arguments of uneven rings, some or none."""
+        """Return some arguments of uneven rings, or none."""
         all_of_it = {
             "refire_us": self.each(60_000),
             "intervals_us": self.mostly([(0, 1, 20_000), (self.anything(), 2, 1_000)][: self.random.randrange(3)]),
@@ -174,12 +174,12 @@ class Chance:
         return {name: value for name, value in all_of_it.items() if self.random.random() < 0.4}
 
     def place(self, good: object) -> Any:
-        """Where something is written to: a text names a file in the folder of this run alone."""
+        """Return a place to write to: a string names a file in this run's own folder."""
         thing = self.mostly(good)
         return f"{FOLDER}/{thing}" if isinstance(thing, str) else thing
 
     def file(self, name: str, content: bytes) -> Path:
-        """A file of this name with a piece changed, most of the time."""
+        """Write a file of this name, most of the time with a piece changed, and return its path."""
         path, changed = FOLDER / name, bytearray(content)
         for _ in range(self.random.randrange(3)):
             at = self.random.randrange(len(changed) + 1)
@@ -189,7 +189,7 @@ class Chance:
 
 
 def calls(c: Chance) -> list[Callable[[], Any]]:
-    """Every entry, with arguments by chance."""
+    """Return calls of every entry, with random arguments."""
     a, m = c.anything, c.mostly
     return [
         lambda: ANY.design(
@@ -321,7 +321,7 @@ def calls(c: Chance) -> list[Callable[[], Any]]:
         lambda: RUNS[0].figures(),
         lambda: [*c.random.choice([ANY.experiments.alcoves, ANY.experiments.courses])(m(3), m(2))[:1]],
         lambda: ANY.experiments.rooms(m(RING_FILE), m(3), m(1), kind=m("hall"), driving=m(False), height=m("flat")),
-        # Judging takes a second for each place, and a minute for many: no such ring gets so far.
+        # Judging takes a second for each place, and a minute for many, so no ring gets so far.
         lambda: ANY.experiments.recommend(m("absent.toml"), places=m(1), first=m(0), driving=m(False), wrong=m(0.03)),
         lambda: [*ANY.typing.Scenes(m("alcove"), m(range(3)), m("plain"))[:2]],
         lambda: ANY.sim.simulate(ROOM, method(c), 5).to_xarray(),
@@ -336,7 +336,7 @@ def calls(c: Chance) -> list[Callable[[], Any]]:
 
 
 def method(c: Chance) -> Any:
-    """A method that nearly makes sense."""
+    """Return a method that nearly makes sense."""
     m = c.mostly
     return ANY.sim.Method(
         m(c.random.choice(["eeruf", "flow", "in_turn"])),
@@ -350,7 +350,7 @@ def method(c: Chance) -> Any:
 
 
 def tried(call: Callable[..., Any], *arguments: Any) -> Any:
-    """The result of a call; None where it refuses its arguments, as it may."""
+    """Return the result of a call; None if it refuses its arguments, as it may."""
     try:
         return call(*arguments)
     except eeruf.EerufError as error:
@@ -359,14 +359,14 @@ def tried(call: Callable[..., Any], *arguments: Any) -> Any:
 
 
 def ring(c: Chance) -> None:
-    """A ring of like sensors."""
+    """Run a ring of identical sensors."""
     good = {"t_delta_us": 500, "now_us": c.random.choice([0, 3, 2**32 - 9]), "window_us": 36_000, "consecutive": 2}
     live = ANY.Ring(tables.TABLE_I_D, **c.one_wrong(good), blanking_us=c.random.choice([0, 900]))
     run(c, live, ANY.Adaptation([tables.TABLE_I_D, SLOW], 500, window_periods=1))
 
 
 def uneven_ring(c: Chance) -> None:
-    """A ring whose sensors differ, share lines, or rest longer."""
+    """Run a ring whose sensors differ, share lines, or rest longer."""
     needs: dict[str, Any] = {**UNEVEN, "shared_lines": [(0, 2)], "now_us": 0, "consecutive": 2}
     if c.random.random() < 0.4:
         needs = {"t_delta_us": c.each(900), "window_us": c.each(12_000), **c.uneven()}
@@ -375,7 +375,7 @@ def uneven_ring(c: Chance) -> None:
 
 
 def unverified_ring(c: Chance) -> None:
-    """A ring of any schedule, good or not."""
+    """Run a ring with any schedule, good or not."""
     firing = {"period_us": 60_000, "t_fire_a_us": [0, 20_000], "t_fire_b_us": [c.random.randrange(60_000), 25_000]}
     good = {"t_delta_us": 500, "now_us": 0, "window_us": c.random.choice([900, 12_000, 36_000]), "blanking_us": 0}
     live = ANY.Ring.unverified(ANY.Schedule.from_firing(**c.one_wrong(firing)), **c.one_wrong(good))
@@ -383,12 +383,12 @@ def unverified_ring(c: Chance) -> None:
 
 
 def run(c: Chance, live: Any, adaptation: Any) -> None:
-    """Polls and disturbs a ring at any time; what it refuses must leave it as it was."""
+    """Poll and disturb a ring at any time; a refused call must leave it unchanged."""
     m, r = c.mostly, c.random
     watch = ANY.SensorWatch(live.sensors, 2)
     now = 0
     for _ in range(r.choice([3, 12, 40])):
-        # In time or late; now and then at no time at all.
+        # In time or late; sometimes at an invalid time.
         now = r.choice([live.next_deadline_us, now, now + r.randrange(90_000)])
         event = tried(live.poll, m(now), m(None))
         if event is not None:
@@ -408,7 +408,7 @@ def run(c: Chance, live: Any, adaptation: Any) -> None:
 
 
 def disturb(c: Chance, live: Any, now: int) -> None:
-    """Something that may happen to a ring of either kind between two polls."""
+    """Do something that may happen to a ring of either kind between two polls."""
     tried(c.random.choice([live.disable, live.enable, live.stuck, live.is_enabled]), c.mostly(1))
     tried(live.wait_us, c.anything())
     c.random.choice([live.pause, live.resume, live.resume, lambda: tried(live.restart, c.mostly(now))])()
@@ -421,7 +421,7 @@ def disturb(c: Chance, live: Any, now: int) -> None:
 
 
 def recorded(c: Chance) -> None:
-    """A simulation that writes itself into a file, until it is closed."""
+    """Run a simulation that writes itself into a file until it is closed."""
     with ANY.sim.Simulation(ROOM, mcap=c.place(FOLDER / "own.mcap")) as live:
         live.step(c.small(0))
         c.random.choice([live.close, lambda: None])()
@@ -429,7 +429,7 @@ def recorded(c: Chance) -> None:
 
 
 def log_of_firings(c: Chance) -> None:
-    """A log of firings whose bytes somebody changed, read and replayed."""
+    """Read and replay a log of firings with changed bytes."""
     rows = "".join(f"{at % 2},{40_000 * at},{at // 2},{at // 2 % 2},{9_000 + at}\n" for at in range(8))
     file = c.file("firings.csv", f"sensor,fired_us,period,phase,t_echo_us\n{rows}".encode())
     c.random.choice(
@@ -443,7 +443,7 @@ def log_of_firings(c: Chance) -> None:
 
 
 def occupancy_map(c: Chance) -> Path:
-    """A map of 6 by 4 cells, one of its files changed."""
+    """Write a map of 6 by 4 cells, with one of its files changed."""
     c.file("map.pgm", b"P5 6 4 255\n" + bytes([0, 0, 0, 0, 0, 0, 0, 254, 254, 254, 254, 0] * 2))
     return c.file(
         "map.yaml",
@@ -452,7 +452,7 @@ def occupancy_map(c: Chance) -> Path:
 
 
 def grid(c: Chance) -> None:
-    """A grid that is filled and steered by."""
+    """Fill a grid, and steer by it."""
     m = c.mostly
     live, vfh = ANY.nav.Himm(9), ANY.nav.Vfh()
     for _ in range(6):
@@ -468,7 +468,7 @@ def grid(c: Chance) -> None:
 
 
 def flow_ring(c: Chance) -> None:
-    """A ring by flow that is polled and disturbed at any time."""
+    """Poll and disturb a flow ring at any time."""
     m, r = c.mostly, c.random
     good = {"settings": {"seed": 1}, "now_us": 0, "window_us": 36_000, "blanking_us": 0, "reach_us": None}
     live = ANY.Ring.flow(8, **c.one_wrong(good))
@@ -485,7 +485,7 @@ def flow_ring(c: Chance) -> None:
 
 
 def mutated(c: Chance, text: str) -> str:
-    """A text with a piece of it changed."""
+    """Return a text with a piece of it changed."""
     at = c.random.randrange(len(text))
     return (
         text[:at] + c.random.choice(["", "9", "-", "[", "\n", "nan", "1e999", "x"]) + text[at + c.random.randrange(4) :]
@@ -493,7 +493,7 @@ def mutated(c: Chance, text: str) -> str:
 
 
 def tampered(c: Chance) -> Any:
-    """Readings out of columns that somebody changed."""
+    """Make readings from columns with a change."""
     reduced: Any = READINGS.__reduce__()
     rebuild, (method, duration_s, sensors, columns, paths) = reduced
     name = c.random.choice(list(columns))
@@ -507,20 +507,20 @@ def tampered(c: Chance) -> Any:
 
 
 class Used(NamedTuple):
-    """Memory of a process when all that it no longer needs has been given back."""
+    """Memory of a process after all unused memory has been given back."""
 
     resident_mb: float
-    """Share of the machine's memory, with what lies idle between used pieces."""
+    """Memory of the machine in use, including idle parts between used pieces."""
     heap_mb: float
-    """Asked of malloc and not freed: by Rust, NumPy and what Python does not manage itself."""
+    """Memory from malloc that was not freed: of Rust, of NumPy, and of Python where it does not manage its own."""
     objects: int
-    """Pieces that Python manages itself."""
+    """Number of memory blocks that Python manages itself."""
 
     def __str__(self) -> str:
         return f"{self.resident_mb:.1f} MB resident, {self.heap_mb:.3f} MB of the heap, {self.objects} objects"
 
 
-# What may come in the second half of a run of any length: more is a leak. Caches have filled by then.
+# The growth allowed in the second half of a run of any length: more is a leak, since caches have filled by then.
 MOST_GROWN = Used(resident_mb=8.0, heap_mb=0.5, objects=3_000)
 
 
@@ -543,13 +543,13 @@ class _MallInfo(ctypes.Structure):
 
 
 def resident_mb() -> float:
-    """The process's memory, on Linux."""
+    """Return the process's memory, on Linux."""
     status = Path("/proc/self/status").read_text() if sys.platform == "linux" else "VmRSS: 0"
     return int(status.split("VmRSS:")[1].split()[0]) / 1024
 
 
 def used() -> Used:
-    """Memory used now, on Linux with glibc; elsewhere zeros for what cannot be known."""
+    """Return the memory used now, on Linux with glibc; elsewhere zeros for unknown figures."""
     gc.collect()
     libc, heap_bytes = ctypes.CDLL(None), 0
     if hasattr(libc, "mallinfo2"):
@@ -561,9 +561,9 @@ def used() -> Used:
 
 
 def fuzz(number: int, seed: int, *, report_every: int = 0) -> tuple[Counter[str], list[Used]]:
-    """So many calls; how they ended, and what was used after a tenth of them, after each further tenth, and at the end."""
+    """Make this many calls; return how they ended, and the memory used after each tenth of them and at the end."""
     chance, ended, tenths = Chance(seed), Counter[str](), list[Used]()
-    # What calls import is no growth.
+    # Imports by calls are not growth.
     for name in ("pandas", "polars", "pyarrow", "xarray", "dask.array", "distributed", "matplotlib.pyplot"):
         with contextlib.suppress(ImportError):
             importlib.import_module(name)
@@ -588,7 +588,7 @@ def fuzz(number: int, seed: int, *, report_every: int = 0) -> tuple[Counter[str]
             assert str(error), "an error says what is wrong"
             ended[type(error).__name__] += 1
         except TypeError as error:
-            # Only about which arguments there are.
+            # Only about the names of arguments.
             assert "argument" in str(error), (call, error)
             ended["TypeError"] += 1
     faulthandler.cancel_dump_traceback_later()
@@ -596,7 +596,7 @@ def fuzz(number: int, seed: int, *, report_every: int = 0) -> tuple[Counter[str]
 
 
 def grown(tenths: list[Used]) -> Used:
-    """Growth in the second half of the run."""
+    """Return the growth in the second half of the run."""
     half, end = tenths[4], tenths[-1]
     return Used(end.resident_mb - half.resident_mb, end.heap_mb - half.heap_mb, end.objects - half.objects)
 

@@ -1,4 +1,4 @@
-"""Draws every figure at the width of a paper's column, light and dark, on one sheet: `python tests/python/sheet.py FILE.png`."""
+"""Draw every figure at the width of a paper's column, light and dark, on one sheet: `python tests/python/sheet.py FILE.png`."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ SCENES = Path(__file__).parents[2] / "scenes"
 
 @functools.lru_cache
 def figures() -> list[tuple[str, float, Callable[[Axes], object]]]:
-    """Every figure by its name, with its height in inches."""
+    """Return every figure by its name, with its height in inches."""
     two = sim.Scene.from_toml(eeruf.example("scenes/two-hc-sr04.toml"))
     alcove = sim.Scene.read_toml(SCENES / "alcove.toml")
     conventional = sim.simulate(alcove, "conventional", periods=120)

@@ -20,7 +20,7 @@ def budget(*arguments: str) -> tuple[int, str]:
 
 
 def write(code: int, most: int) -> None:
-    """A folder with this many lines of code, and a budget of them."""
+    """Write a folder with this many lines of code, and a budget for it."""
     tests = "#[cfg(test)]\nmod tests {\n    fn a() {}\n}\n"
     Path("src").mkdir(exist_ok=True)
     Path("src/lib.rs").write_text("//! Words.\n\n" + "fn a() {}\n" * code + tests)

@@ -223,7 +223,7 @@ def test_push_many_takes_any_array_and_changes_none() -> None:
 
 
 def test_a_million_readings_are_read_in_place() -> None:
-    # 8 MB in; were they copied, numpy would trace as much again. Out come kinds of one byte each, in memory of Rust.
+    # The input has 8 MB; if it were copied, numpy would trace as much again. The kinds have one byte each, in Rust's memory.
     echoes = np.full((125_000, 8), 9_000.0)
     filter = eeruf.EchoFilter(8, 500)
     tracemalloc.start()

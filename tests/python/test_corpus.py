@@ -33,7 +33,7 @@ def test_every_path_of_the_corpus_is_found(case: dict[str, Any]) -> None:
 
 @functools.cache
 def rust() -> Any:
-    """Rust's figures for the corpus, to the last bit."""
+    """Return Rust's figures for the corpus, to the last bit."""
     program = os.environ.get("EERUF_LAB")
     assert program is not None, "EERUF_LAB names the built eeruf-lab; `cargo xtask python` sets it"
     return json.loads(subprocess.run([program, "rust-side", "paths"], check=True, capture_output=True).stdout)
@@ -57,7 +57,7 @@ def test_paths_are_those_of_rust_to_the_last_bit(case: dict[str, Any]) -> None:
 
 
 def separated(case: dict[str, Any]) -> int:
-    """T_delta in us of a separation in ms."""
+    """Convert a separation in ms to T_delta in us."""
     return int(case["separation"]) * 500 - 1
 
 

@@ -23,13 +23,13 @@ MODULES = [eeruf, eeruf.experiments, eeruf.logs, eeruf.nav, eeruf.plot, eeruf.si
 
 
 def public(module: ModuleType) -> list[str]:
-    """The names of a module that users may rely on; of the types all."""
+    """Return the names of a module that users may rely on; for the types, all."""
     own = [name for name in vars(module) if name[0] != "_" and name not in ("annotations", "TYPE_CHECKING")]
     return list(getattr(module, "__all__", own))
 
 
 def names(module: ModuleType) -> Iterator[tuple[str, Any]]:
-    """The public functions and classes of a module, and the classes' methods and properties, compiled or not."""
+    """Yield the public functions and classes of a module, and the classes' methods and properties, compiled or not."""
     for name in public(module):
         thing = getattr(module, name)
         if inspect.ismodule(thing) or not (callable(thing) or inspect.isclass(thing)):
@@ -43,13 +43,13 @@ def names(module: ModuleType) -> Iterator[tuple[str, Any]]:
 
 
 def inherited(of: type) -> dict[str, Any]:
-    """The members of a class and of those of eeruf's that it stands on."""
+    """Return the members of a class and of its base classes in eeruf."""
     return {
         name: value
         for base in reversed(of.__mro__)
         if base.__module__.startswith("eeruf")
         for name, value in vars(base).items()
-        # The default of a field is no method, and what is gone has no attribute.
+        # The default of a field is not a method, and a removed member has no attribute.
         if name not in getattr(base, "__dataclass_fields__", ()) and hasattr(base, name)
     }
 
@@ -127,7 +127,7 @@ def test_help_shows_the_arguments_of_what_can_be_called(name: str) -> None:
 
 
 def listings(document: str) -> list[str]:
-    """The blocks of Python in a document."""
+    """Return the blocks of Python in a document."""
     return re.findall(r"^```python\n(.*?)^```$", (ROOT / document).read_text(), flags=re.M | re.S)
 
 

@@ -27,7 +27,7 @@ ROOM = sim.Scene([[5, 2, -5, 2]], robots=[ROBOT])
 
 
 def each() -> dict[str, Any]:
-    """One of every public class, by its name."""
+    """Make one object of every public class, by its name."""
     ring = eeruf.Ring(tables.TABLE_I_D, 500, window_us=36_000)
     events = [event for _ in range(60) if (event := ring.poll(ring.next_deadline_us)) is not None]
     waits = eeruf.WaitSearch(4, 40_000, 8_000, 1_000, t_delta_us=999)
@@ -111,7 +111,7 @@ def each() -> dict[str, Any]:
 
 
 def public_classes() -> set[str]:
-    """All that users can hold: no errors, and no bases."""
+    """Return the classes whose objects users can hold: no errors, and no bases."""
     return {
         kind.__name__
         for kind in PUBLIC
@@ -119,7 +119,7 @@ def public_classes() -> set[str]:
     }
 
 
-# What does long work, or work on threads, beside its properties.
+# Uses that do long work, or work on threads, besides properties.
 USES: dict[str, Callable[[Any], object]] = {
     "Adaptation": lambda of: of.adapt(eeruf.Ring(tables.TABLE_I_D, 500, window_us=36_000), eeruf.Fire(0)),
     "Batch": lambda of: (of.step(0.1), of.reset([0]), of.step(0.1, v_m_s=0.1, w_rad_s=0.0)),
@@ -141,7 +141,7 @@ USES: dict[str, Callable[[Any], object]] = {
 
 
 def properties(kind: type) -> list[str]:
-    # A name that is gone is no attribute.
+    # A removed name is not an attribute.
     return [of for of in dir(kind) if of[0] != "_" and not callable(getattr(kind, of, print))]
 
 

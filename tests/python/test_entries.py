@@ -17,10 +17,10 @@ SCENE = experiments.alcoves()[0]
 
 
 class Paper:
-    """The paper's filter as one's own."""
+    """The paper's filter as a custom filter."""
 
     def __init__(self, robot: sim.Robot) -> None:
-        """With the robot's settings."""
+        """Take the robot's settings."""
         t_delta_us = robot.t_delta_us
         assert isinstance(t_delta_us, int)
         self.filter = eeruf.EchoFilter(robot.sensors, t_delta_us)
@@ -38,7 +38,7 @@ def believing(robot: sim.Robot) -> Callable[[eeruf.typing.FiredReading], Any]:
 
 
 class InTurn:
-    """One after the other, as the method ``sequential``."""
+    """A custom firing, one sensor after the other, like the method ``sequential``."""
 
     def __init__(self, robot: sim.Robot) -> None:
         """Take the number of sensors."""
@@ -105,7 +105,7 @@ def test_schedules_settings_and_sketches_are_those_given() -> None:
 
 def test_robots_of_one_make_fire_as_rings_are_fired_today() -> None:
     today = ["in_turn", "arrays", "groups", "sync_line", "free_running", "table"]
-    # A ping timer as long as the window is one by one.
+    # A ping timer as long as the window fires one by one.
     timer = sim.Method("in_turn", label="timer", sketch={"turn_us": 36_001})
     methods: list[Any] = [*today, timer, "sequential"]
     table = experiments.set_three(4, periods=20, methods=methods)

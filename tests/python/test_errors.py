@@ -25,7 +25,7 @@ ANYTHING = st.one_of(
 )
 
 RING = Path(__file__).parents[2] / "rings/paper-12.toml"
-# For what a type checker would not let through.
+# For calls that a type checker would refuse.
 ANY: Any = eeruf
 NEEDS = eeruf.Needs(sensors=8, module="hc-sr04", layout="ring")
 WALL = sim.Scene([[0, 0, 1, 0]])
@@ -187,7 +187,7 @@ BAD: list[tuple[Callable[[], Any], type[Exception], str]] = [
     (lambda: ANY.sim.Scene.from_toml(3), eeruf.EerufError, "text = 3; expected a scene in TOML; read_toml"),
     (lambda: eeruf.Schedule.read_toml("nowhere.toml"), eeruf.EerufError, "nowhere.toml: No such file"),
     (lambda: sim.Scene.read_toml("nowhere.toml"), eeruf.EerufError, "nowhere.toml"),
-    # The report of the program: line, key, value and expectation, and which kind a file is.
+    # The report of the program: line, key, value and expectation, and the kind of the file.
     (lambda: eeruf.Schedule.from_toml("period_us = -1"), eeruf.EerufError, "line 1: period_us: integer `-1`; "),
     (lambda: eeruf.Schedule.read_toml(RING), eeruf.EerufError, "ring for `eeruf design`; expected a schedule"),
     (lambda: sim.Scene.read_toml(RING), eeruf.EerufError, "this is a ring for `eeruf design`; expected a scene"),
@@ -366,7 +366,7 @@ def test_an_unknown_keyword_is_a_type_error(call: Any) -> None:
 
 
 def refuse(*calls: Callable[[], Any]) -> None:
-    """Calls work, or say what is wrong; nothing else."""
+    """Check that calls work, or raise a clear error, and nothing else."""
     for call in calls:
         try:
             call()

@@ -32,7 +32,7 @@ OBJECTS: list[Any] = [
     sim.simulate(ROOM, periods=3),
     sim.simulate_blocks(ROOM, periods=4, block_periods=2),
 ]
-# Values that are right: an argument has one meaning.
+# Right values, since an argument has the same meaning everywhere.
 RIGHT: dict[str, Any] = {
     "sensors": 8,
     "schedule": tables.TABLE_I_D,
@@ -98,7 +98,7 @@ RIGHT: dict[str, Any] = {
     "required_us": 5,
     "numbers": range(1),
 }
-# The same where a name has two meanings, and optional ones without which the others say nothing.
+# Right values of names with two meanings, and of optional arguments without which others do nothing.
 RIGHT_OF: dict[str, dict[str, Any]] = {
     **{
         key: {"sensors": 4, "t_delta_us": 999, "min_interval_us": 15000, "window_us": 36000}
@@ -117,7 +117,7 @@ RIGHT_OF: dict[str, dict[str, Any]] = {
 
 
 def callables() -> Iterator[tuple[str, Any]]:
-    """All that users call: functions, classes but for records and errors, and methods."""
+    """Yield everything that users call: functions, classes except records and errors, and methods."""
     for module in (eeruf, sim, nav, experiments, logs):
         for name in module.__all__:
             thing = getattr(module, name)
@@ -136,17 +136,17 @@ def callables() -> Iterator[tuple[str, Any]]:
 
 
 def static(kind: type) -> list[str]:
-    """The functions of a class that need no object."""
+    """Return the functions of a class that need no object."""
     is_static = (staticmethod, classmethod)
     return [of for of in sorted(dir(kind)) if of[0] != "_" and isinstance(inspect.getattr_static(kind, of), is_static)]
 
 
 def calls() -> Iterator[tuple[str, str, Any, tuple[Any, ...], dict[str, Any]]]:
-    """Each callable with each argument wrong, and what else it needs right."""
+    """Yield each callable with each argument wrong, and all others right."""
     for name, function in callables():
         try:
             parameters = list(inspect.signature(function).parameters.values())
-        except ValueError:  # no class that users make
+        except ValueError:  # not a class that users create
             continue
         named = [of for of in parameters if of.kind not in (of.VAR_POSITIONAL, of.VAR_KEYWORD)]
         right = {of.name: RIGHT.get(of.name) for of in named if of.default is of.empty} | RIGHT_OF.get(name, {})
@@ -166,7 +166,7 @@ def test_one_wrong_value_is_one_error_that_names_it() -> None:
             function(*args, **kwargs)
             wrong.append(f"{name}, {argument}: no error")
         except eeruf.EerufError as error:
-            # What is missing in RIGHT is None, and is refused by its own name.
+            # An argument that is missing in RIGHT is None, and is refused by its own name.
             missing = [other for other, value in kwargs.items() if value is None]
             if "expected" not in str(error) or not any(of in str(error) for of in [argument, *missing]):
                 wrong.append(f"{name}, {argument}: {error}")

@@ -1,4 +1,4 @@
-"""A ring by flow, as a Python program meets it: late, among others, and with what is gone answered by name."""
+"""A flow ring in a Python program: late polls, other robots, and removed names, which the errors replace."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ WINDOW_US = 27_000
 
 
 def wall_us(sensor: int) -> int:
-    """A wall of its own for each sensor."""
+    """Return the echo time of the sensor's own wall."""
     return 5_000 + 900 * sensor
 
 
@@ -28,7 +28,7 @@ def run(
     late_us: int = 0,
     speed_m_s: float | None = None,
 ) -> list[eeruf.Reading]:
-    """Readings of a loop that comes late by chance; sensors hear their walls, and paths (from, to, microseconds)."""
+    """Return readings of a loop that is late at random; sensors hear their walls, and paths (from, to, microseconds)."""
     chance = random.Random(late_us + 1)
     found, pending, now_us = list[eeruf.Reading](), list[tuple[int, int]](), 0
     while len(found) < readings:
@@ -86,7 +86,7 @@ def test_one_path_of_a_sensor_is_never_believed_by_another(late_us: int, speed_m
         return accepted
 
     assert believed(reach_us=33_500) == 0
-    # A control: with sound that is heard for longer than was said some are.
+    # A control: if sound is heard for longer than the setting says, some are.
     assert believed(reach_us=6_000) > 0
 
 
@@ -96,7 +96,7 @@ def test_quiet_goes_to_the_sensor_that_is_fooled() -> None:
     readings = run(ring, 4_000, own_us=lambda x: 12_000, paths=[(0, 3, 13_000)])
     assert {reading.t_echo_us for reading in readings if reading.kind == "accepted"} == {12_000}
     late = [reading.kind for reading in readings[-800:] if reading.sensor == 3]
-    # What is believed gives quiet back, and is fooled again.
+    # A believed sensor gives quiet back, and is fooled again.
     assert late.count("accepted") >= 0.6 * len(late)
 
 
@@ -198,7 +198,7 @@ def test_the_same_seed_gives_the_same_firings_another_others() -> None:
         return [event.due_us for event in events if isinstance(event, eeruf.Fire)]
 
     assert fired({"seed": 1}) == fired({"seed": 1}) != fired({"seed": 2})
-    # Robots that are programmed alike throw otherwise.
+    # Robots with the same program draw different gaps.
     assert fired(None) != fired(None)
 
 

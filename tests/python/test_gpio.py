@@ -1,4 +1,4 @@
-"""The example for a Raspberry Pi, among modules that this test plays behind gpiod's interface."""
+"""The example for a Raspberry Pi, with modules that this test simulates behind gpiod's interface."""
 
 import importlib.util
 import sys
@@ -32,7 +32,7 @@ def example() -> ModuleType:
 
 
 class World:
-    """Modules, a clock that goes on where the ring waits, and the lines that gpiod would open."""
+    """Modules, a clock that advances while the ring waits, and the lines that gpiod would open."""
 
     def __init__(self, start_us: int) -> None:
         self.clock_us = start_us
@@ -75,7 +75,7 @@ class World:
     def wait_edge_events(self, timeout: float) -> bool:
         until_us = self.clock_us + round(1e6 * timeout)
         first_us = self.edges[0][0] if self.edges else until_us + 1
-        # A process that has slept wakes up late, by differing times.
+        # A process that has slept wakes up late, by varying times.
         late_us = self.clock_us * 7_919 % 400 if timeout else 0
         self.clock_us = max(self.clock_us, min(until_us, first_us)) + late_us
         return first_us <= until_us
@@ -121,5 +121,5 @@ def test_ring_on_pins_reads_walls_and_faults(
     assert kinds[OPEN] == {"clear"} and kinds[STUCK] == {"stuck"}
     assert kinds[CUT] == kinds[SPIKE] == {"unanswered"}
     assert world.firings[STUCK] == 0 and min(world.firings[:STUCK]) >= 40
-    # It polls for what is due soon, and so fires in time though each sleep ends late.
+    # The ring waits actively for firings that are due soon, so it fires in time although each sleep ends late.
     assert max(late_us) <= 50

@@ -8,7 +8,7 @@ import time
 
 import pytest
 
-# Each would take hours, and says so from the middle of it, or just before where there is no progress to follow.
+# Each would take hours, and reports that it runs from within, or just before if it has no progress to report.
 LONG = {
     "design": "eeruf.design(64, 499, 9_000, 36_000, layout=pairs, budget=2**60, progress=tell)",
     "simulate": "eeruf.sim.simulate(scene, periods=3_000_000, progress=tell)",

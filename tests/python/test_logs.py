@@ -1,4 +1,4 @@
-"""Logs of robots: the same bags as Rust reads, and what a ring's log of firings says."""
+"""Logs of robots: the same bags as Rust reads, and findings from a ring's log of firings."""
 
 import contextlib
 import gzip
@@ -25,7 +25,7 @@ BAGS = Path(__file__).parents[2] / "crates/eeruf-logs/tests/bags"
 
 
 def simulated(method: Any, periods: int) -> tuple[eeruf.logs.Firings, sim.Readings]:
-    """Firings as firmware would log them, and the readings with what caused them."""
+    """Return firings as firmware would log them, and the readings with their causes."""
     scene = sim.Scene.from_toml(eeruf.example("scenes/alcove.toml"))
     readings = sim.simulate(scene, method, periods=periods)
     fired_us = np.rint(1e6 * readings.fired_s)
@@ -46,7 +46,7 @@ def program(words: list[object]) -> str:
 
 
 def assert_same(log: eeruf.logs.Ranges, other: eeruf.logs.Ranges) -> None:
-    """Hold two readings of a log against each other, in all but the name of the file."""
+    """Compare two readings of a log in everything but the name of the file."""
     for name, column in log.columns().items():
         np.testing.assert_array_equal(column, getattr(other, name), err_msg=name)
     for name in ("names", "topics", "frames", "skipped", "guesses", "warnings", "firing", "proves", "crosstalk"):
@@ -67,7 +67,7 @@ def test_bags_of_all_kinds_are_read_alike(name: str) -> None:
 
 @pytest.mark.parametrize("name", ["sqlite-humble", "sqlite-jazzy", "sqlite-jazzy-packed"])
 def test_a_bag_of_sqlite_is_read_as_one_of_mcap_is(name: str, tmp_path: Path) -> None:
-    # The wheel's own SQLite is built without what bags do not need.
+    # The wheel's own SQLite is built without features that bags do not need.
     shutil.copytree(BAGS / name, tmp_path / name)
     with contextlib.closing(sqlite3.connect(tmp_path / name / f"{name}.db3")) as database:
         database.executescript((BAGS / name / f"{name}.sql").read_text())
@@ -177,7 +177,7 @@ def in_memory(content: bytes) -> str:
 
 
 def behind(content: bytes) -> io.BytesIO:
-    """A file that stands where the log begins."""
+    """Return a file positioned at the beginning of the log."""
     file = io.BytesIO(b"before it" + content)
     file.seek(9)
     return file
@@ -385,7 +385,7 @@ def far_log(readings: int) -> Any:
 
 
 def blocking_loop() -> list[tuple[float, float]]:
-    """Make the ranges of two sensors of which the second hears the first, in metres: their sum stays."""
+    """Make the ranges in metres of two sensors, the second of which hears the first: their sum is constant."""
     front = 0.6 + 0.3 * np.sin(np.arange(300) / 7) + 0.1 * np.sin(np.arange(300) / 2)
     return [(round(float(own), 3), round(2.1 - float(own), 3)) for own in front]
 
@@ -416,7 +416,7 @@ def test_anything_with_ranges_is_checked_alike(tmp_path: Path) -> None:
     printed = subprocess.run(
         [sys.executable, "-m", "eeruf", "logs", str(file)], check=False, capture_output=True, text=True
     )
-    # The program breaks lines where the terminal ends.
+    # The program wraps lines at the terminal's width.
     assert printed.returncode == 3 and printed.stdout.split()[:60] == str(eeruf.check(file)).split()[:60]
 
 

@@ -1,4 +1,4 @@
-"""Where readings looked, the grid that they fill, and where it lets a robot drive."""
+"""The places that readings look at, the grid that they fill, and driving by it."""
 
 import math
 from typing import Any
@@ -10,12 +10,12 @@ from eeruf import nav, sim
 
 ROOM = [[-2, -2, 2, -2], [2, -2, 2, 2], [2, 2, -2, 2], [-2, 2, -2, -2]]
 C_M_S = 343.2
-# For what a type checker would not let through.
+# For calls that a type checker would refuse.
 ANY: Any = nav
 
 
 def hits(readings: sim.Readings) -> Any:
-    """Where each true echo came from."""
+    """Return the places from which true echoes came."""
     right = readings.is_accepted & ~readings.is_wrong() & ~np.isnan(readings.t_echo_us)
     range_m = 0.5e-6 * C_M_S * readings.t_echo_us[right]
     heading = readings.heading_rad[right]
@@ -54,7 +54,7 @@ def test_where_readings_looked_and_how_far_gives_the_walls() -> None:
     readings = sim.simulate(sim.Scene(ROOM, robots=[robot], noise=False), periods=40)
     x, y = hits(readings)
     off_m = np.maximum(np.abs(x), np.abs(y)) - 2.0
-    # Those that look at a wall straight have it on their axis; others hear it from beside, and so nearer.
+    # Sensors that face a wall have it on their axis; others hear it off their axis, and so nearer.
     assert len(x) > 100
     assert (off_m < 0.05).all()
     assert (np.abs(off_m) < 0.05).mean() > 0.3

@@ -1,4 +1,4 @@
-"""The notebooks run from top to bottom, and what their texts say of their figures holds."""
+"""The notebooks run from top to bottom, and the claims of their texts about figures hold."""
 
 from pathlib import Path
 

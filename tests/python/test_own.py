@@ -1,4 +1,4 @@
-"""Firings and filters of one's own, schedules and scenes that change under way."""
+"""Custom firings and filters, and schedules and scenes that change during a simulation."""
 
 import gc
 import math
@@ -67,7 +67,7 @@ def test_own_firing_by_a_methods_schedule_gives_its_readings() -> None:
 
 
 def level_and_amplitude(far: float) -> tuple[float, float]:
-    """The only level at which an echo of a wall so far off is heard, and the amplitude of its path."""
+    """Return the only level at which the echo of a wall at this distance is heard, and the amplitude of its path."""
     robot = sim.Robot((0, 0, math.pi / 2), sensors=1, spacing_rad=0.1, radius_m=0.0)
     room = sim.Scene([[5, far, -5, far]], robots=[robot], noise=False)
     seen: list[eeruf.typing.FiredReading] = []

@@ -9,12 +9,12 @@ import eeruf
 
 NEEDS: dict[str, Any] = {"t_delta_us": [999, 999, 1500, 1500], "window_us": [36_000, 36_000, 12_000, 12_000]}
 LINES = [(0, 2)]
-#: Beyond the two short windows.
+#: The wall's echo time, beyond the two short windows.
 WALL_US = 13_000
 
 
 def table(folder: Path) -> eeruf.Schedule:
-    """Two phases for four sensors with limits of their own, by way of a file."""
+    """Return two phases for four sensors with limits of their own, read from a file."""
     found = eeruf.design(4, min_interval_us=15_000, shared_lines=LINES, **NEEDS)
     assert found.schedule is not None
     (folder / "table.toml").write_text(found.schedule.to_toml(), "utf-8")
@@ -24,7 +24,7 @@ def table(folder: Path) -> eeruf.Schedule:
 def believed(
     ring: eeruf.Ring, periods: int, wall: bool = True, noise: bool = False, adaptation: eeruf.Adaptation | None = None
 ) -> list[tuple[int, int | None]]:
-    """Accepted sensors and echo times before a wall, with something before it that never repeats, or with that alone."""
+    """Return accepted sensors and echo times of a wall, with earlier echoes that never repeat, or of these alone."""
     accepted, fired, ended = [], [0] * ring.sensors, 0
     while ended < periods:
         now_us = ring.next_deadline_us

@@ -16,7 +16,7 @@ READINGS = sim.simulate(SCENE, "conventional", 100)
 
 
 def lengths_m(readings: sim.Readings) -> list[float]:
-    """The length of each reading's path; paths may be numbered otherwise."""
+    """Return the length of each reading's path; paths may be numbered differently."""
     return [float(readings.paths["length_m"][path]) if path >= 0 else 0.0 for path in readings.path[:200]]
 
 

@@ -85,7 +85,7 @@ def test_nothing_that_was_ended_runs_on() -> None:
 
 @pytest.fixture
 def interrupted_soon() -> Iterator[None]:
-    """Ctrl-C half a second from now."""
+    """Send Ctrl-C half a second from now."""
 
     def interrupt(*_: object) -> None:
         raise KeyboardInterrupt

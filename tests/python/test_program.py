@@ -1,4 +1,4 @@
-"""Python says what the program says, to the last bit: both stand on the same Rust."""
+"""Python gives the program's results, to the last bit: both use the same Rust code."""
 
 import functools
 import json
@@ -18,7 +18,7 @@ ROOT = Path(__file__).parents[2]
 
 @functools.lru_cache
 def printed(*words: str) -> str:
-    """The program's JSON."""
+    """Return the program's JSON as text."""
     path = os.environ.get("EERUF_PROGRAM")
     assert path is not None, "EERUF_PROGRAM names the program; `cargo xtask python` sets it"
     run = subprocess.run([path, *words, "--json"], cwd=ROOT, capture_output=True, text=True)
@@ -27,7 +27,7 @@ def printed(*words: str) -> str:
 
 
 def program(*words: str) -> Any:
-    """The same, read."""
+    """Return the program's JSON, parsed."""
     return json.loads(printed(*words))
 
 
@@ -89,7 +89,7 @@ def test_a_design_is_the_programs(ring: str, atlas: bool) -> None:
     assert {name: getattr(found, name) for name in printed} == printed
     names = {"value_us", "bound_us", "proven", "nodes", "reason", "from_atlas"}
     assert names == set(printed)
-    # The atlas answers by default, as there.
+    # The atlas answers by default, as in the program.
     assert eeruf.design(**needs, **arguments).from_atlas
 
 

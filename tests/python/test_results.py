@@ -15,7 +15,7 @@ ROOM = sim.Scene([[5, 2, -5, 2]], robots=[ROBOT])
 
 
 def some_of_each() -> dict[str, Any]:
-    """One result of every kind, by the name of its class."""
+    """Make one result of every kind, by the name of its class."""
     ring = eeruf.Ring(tables.TABLE_I_D, 500, window_us=36_000)
     events = [event for _ in range(60) if (event := ring.poll(ring.next_deadline_us)) is not None]
     set_one = experiments.set_one(seeds=2, readings=400, methods=["eeruf"])

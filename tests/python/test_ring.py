@@ -18,7 +18,7 @@ def run(
     t_echo_us: Callable[[eeruf.Fire], int | None] = lambda fire: 9_000,
     see: Callable[[Any, int], object] = lambda event, now_us: None,
 ) -> list[Any]:
-    """Events until one of them is the last."""
+    """Run a ring until an event is the last one, and return all events."""
     events: list[Any] = []
     while not events or not until(events[-1]):
         now_us = ring.next_deadline_us

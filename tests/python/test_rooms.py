@@ -15,7 +15,7 @@ RING = Path(__file__).parents[2] / "rings" / "hc-sr04-8.toml"
 
 
 def test_recommendation_is_the_programs() -> None:
-    """By the same words and figures."""
+    """The recommendation has the same words and figures."""
     answer = experiments.recommend(RING, places=1, first=7)
     words = ["study", str(RING), "--places", "1", "--first", "7", "--json"]
     printed = subprocess.run([sys.executable, "-m", "eeruf", *words], capture_output=True, check=True).stdout
@@ -25,7 +25,7 @@ def test_recommendation_is_the_programs() -> None:
 
 
 def test_own_rooms_are_scenes_by_name() -> None:
-    """As the program takes them from files."""
+    """They give the program's answer for the same rooms from files."""
     alcove = RING.parents[1] / "scenes" / "alcove-hc-sr04.toml"
     answer = experiments.recommend(RING, rooms={alcove.stem: sim.Scene.read_toml(alcove)})
     words = ["study", str(RING), "--rooms", str(alcove), "--json"]
@@ -35,7 +35,7 @@ def test_own_rooms_are_scenes_by_name() -> None:
 
 
 def test_rooms_are_scenes_of_the_rings_robot() -> None:
-    """With its modules in place, the same for the same number, driving where asked."""
+    """The robot has its modules in place, is the same for the same number, and drives if requested."""
     one, other = experiments.rooms(RING, 5, 2, kind="clutter")
     assert (one.seed, other.seed, one.height) == (5, 6, other.height)
     assert one.robots[0].sensors == 8 and one.robots[0].module == "hc-sr04"
@@ -48,7 +48,7 @@ def test_rooms_are_scenes_of_the_rings_robot() -> None:
 
 
 def test_wrong_arguments_are_named() -> None:
-    """Thing, value and expectation."""
+    """Errors have thing, value and expectation."""
     with pytest.raises(eeruf.EerufError, match=r'kind = .*kitchen.*; expected .*"corridor"'):
         ANY.rooms(RING, kind="kitchen")
     with pytest.raises(eeruf.EerufError, match=r"none\.toml: No such file"):

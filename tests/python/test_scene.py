@@ -193,7 +193,7 @@ blanking_us = [200, 300, 400]
 together = [[0, 2]]
 height_m = [0.2, 0.3, 0.4]
 """
-    # Other methods than its own do not fire them together.
+    # Methods other than the robot's own do not fire them together.
     scene = sim.Scene(WALLS, robots=[robot.replace(together=())])
     read = sim.Scene.from_toml(text).robots[0]
     for name in ("module", "t_delta_us", "window_us", "blanking_us", "together", "height_m"):

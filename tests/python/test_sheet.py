@@ -1,4 +1,4 @@
-"""All figures on one sheet, for somebody to look at."""
+"""All figures on one sheet, for visual inspection."""
 
 import importlib.util
 import warnings
@@ -17,7 +17,7 @@ def test_every_figure_fits_a_column_light_and_dark() -> None:
     spec.loader.exec_module(sheet)
     file = ROOT / "target" / "python" / "figures.png"
     with warnings.catch_warnings():
-        # A layout that has no room is a warning of matplotlib's.
+        # Matplotlib warns about a layout without room.
         warnings.simplefilter("error", UserWarning)
         warnings.filterwarnings("ignore", message="Animation was deleted")
         assert sheet.draw(file) == 2 * len(sheet.figures()) >= 20

@@ -124,7 +124,7 @@ def test_a_simulation_writes_itself_into_mcap_as_it_is_steered(tmp_path: Path) -
     accepted = [ranges.topics[sensor].endswith("/accepted") for sensor in ranges.sensor]
     assert sum(accepted) == sum(int(step.is_accepted.sum()) for step in steps)
     assert len(ranges) == len(fired) + sum(accepted)
-    # It goes on when the file is closed, and closes once.
+    # The simulation continues when the file is closed, and closes it once.
     size = file.stat().st_size
     assert len(world.step(0.06)) > 0
     world.close()
@@ -157,7 +157,7 @@ def test_a_tampered_pickle_is_refused() -> None:
 
 
 def unaligned(array: Any) -> Any:
-    """Return the array, begun at an odd address."""
+    """Return a copy of the array at an odd address."""
     buffer = bytearray(array.nbytes + 1)
     copy = np.frombuffer(buffer, dtype=array.dtype, offset=1, count=array.size).reshape(array.shape)
     copy[...] = array

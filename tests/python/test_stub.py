@@ -1,4 +1,4 @@
-"""The wheel's stub says what the compiled module says, so that editors show it; the repository says it in Rust alone."""
+"""The wheel's stub has the docstrings of the compiled module, for editors to show; the repository has them in Rust alone."""
 
 import ast
 import hashlib
@@ -14,7 +14,7 @@ ROOT = Path(__file__).parents[2]
 
 
 def stubs() -> tuple[ast.Module, ast.Module]:
-    """The stub in the repository and the one that was installed."""
+    """Return the stub in the repository and the installed one."""
     assert _eeruf.__file__ is not None
     files = (ROOT / "python/eeruf/_eeruf.pyi", Path(_eeruf.__file__).with_name("_eeruf.pyi"))
     kept, installed = (ast.parse(file.read_text(encoding="utf-8")) for file in files)
@@ -22,12 +22,12 @@ def stubs() -> tuple[ast.Module, ast.Module]:
 
 
 def definitions(stub: ast.Module) -> list[Union[ast.ClassDef, ast.FunctionDef]]:
-    """The statements of a stub that may have a docstring."""
+    """Return the statements of a stub that may have a docstring."""
     return [node for node in ast.walk(stub) if isinstance(node, (ast.ClassDef, ast.FunctionDef))]
 
 
 def named_methods(stub: ast.Module) -> str:
-    """The type of a method's name, which is taken out of the stub."""
+    """Remove the type of a method's name from the stub, and return it."""
     found = next(
         node for node in stub.body if isinstance(node, ast.Assign) and ast.unparse(node.targets[0]) == "_MethodName"
     )
@@ -53,7 +53,7 @@ def test_kept_stub_has_signatures_alone() -> None:
     assert names == ["str", f"Literal{list(_eeruf.METHODS)}"]
     for stub in (kept, installed):
         for node in definitions(stub):
-            # Less docstrings and ellipses.
+            # Without docstrings and ellipses.
             node.body = [line for line in node.body if not isinstance(line, ast.Expr)]
     assert ast.dump(installed) == ast.dump(kept)
 

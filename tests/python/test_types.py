@@ -1,4 +1,4 @@
-"""Type checkers find slips, and nothing in what is right."""
+"""Type checkers find mistakes, and nothing in correct code."""
 
 import ast
 import inspect
@@ -18,13 +18,13 @@ FIRST = {
 
 
 def every(name: str) -> set[int]:
-    """The lines that are wrong."""
+    """Return the wrong lines of a file."""
     lines = (HERE / name).read_text().splitlines()
     return set(range(1 + lines.index(FIRST[name]), 1 + len(lines)))
 
 
 def lines_with_errors(name: str, checker: str, *options: str) -> set[int]:
-    """The lines of a file in which a checker finds something."""
+    """Return the lines of a file in which a checker finds something."""
     run = subprocess.run([sys.executable, "-m", checker, *options, str(HERE / name)], capture_output=True, text=True)
     found = [line for line in run.stdout.splitlines() if name + ":" in line]
     assert found, run.stdout + run.stderr

@@ -1,4 +1,4 @@
-"""The wheel is small, depends on NumPy alone, and is there at once."""
+"""The wheel is small, depends on NumPy alone, and is imported at once."""
 
 import importlib
 import os
@@ -12,7 +12,7 @@ from pathlib import Path
 
 
 def wheel() -> Path:
-    """The wheel that is tested."""
+    """Return the tested wheel."""
     path = os.environ.get("EERUF_WHEEL")
     assert path is not None, "EERUF_WHEEL names the wheel; `cargo xtask python` sets it"
     return Path(path)
@@ -49,7 +49,7 @@ def test_shell_commands_of_workflows_run(tmp_path: Path) -> None:
     root = Path(__file__).parents[2]
     program = os.environ.get("EERUF_PROGRAM")
     assert program is not None, "EERUF_PROGRAM names the program; `cargo xtask python` sets it"
-    # What they find in a clone after a build, and on the path.
+    # The files that commands find in a clone after a build, and on the path.
     for name in ("target/any/wheel", "target/debug", "packaging", "python/eeruf", "bin"):
         (tmp_path / name).mkdir(parents=True)
     for name in (

@@ -1,4 +1,4 @@
-"""The program's files are read by the readers that others use."""
+"""Readers of other projects read the program's files."""
 
 import re
 import subprocess
@@ -104,7 +104,7 @@ def test_what_replay_accepts_is_read_by_others(study: Path, tmp_path: Path) -> N
 
 
 def by_rerun(file: Path) -> dict[str, set[str]]:
-    """The components of each topic, as Rerun shows it."""
+    """Return the components of each topic, as Rerun shows them."""
     rerun, shown = Path(sys.executable).with_name("rerun"), file.with_suffix(".rrd")
     subprocess.run([rerun, "mcap", "convert", file, "-o", shown], check=True, capture_output=True)
     said = subprocess.run([rerun, "rrd", "print", "-v", shown], check=True, capture_output=True, text=True).stdout
@@ -120,7 +120,7 @@ def test_rerun_shows_a_study_and_leaves_no_topic_raw(study: Path, tmp_path: Path
     assert {"Transform3D:translation", "Transform3D:quaternion"} <= shown["/tf"]
     assert "Scalars:scalars" in shown["/conventional/robot_1/sonar_1"]
     assert [topic for topic, components in shown.items() if "McapMessage:data" in components] == []
-    # That is how a raw topic shows.
+    # A raw topic is shown like this.
     with (tmp_path / "raw.mcap").open("wb") as opened:
         writer = Writer(opened)
         writer.start()

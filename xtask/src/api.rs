@@ -13,14 +13,14 @@ use crate::toolchain::cargo_of_version;
 const CRATES: [&str; 2] = ["eeruf-core", "eeruf-hc-sr04"];
 /// The version of Rust whose rustdoc writes the format that `public-api` reads.
 const RUST: &str = "1.95";
-/// Lists of public items, one file a crate.
+/// Lists of public items, one file per crate.
 const LISTS: &str = "target/api";
 /// Models that try a ring's methods.
 const MODELS: &str = "fuzz/src/ring/model.rs fuzz/src/ring.rs fuzz/src/flow.rs \
                       crates/eeruf-core/tests/all/flow/world.rs crates/eeruf-core/tests/all/sound/world.rs";
-/// The most names that a reader of `eeruf-core`'s first page may have to choose from.
+/// The largest number of names on the first page of `eeruf-core`'s documentation.
 const NAMES_AT_ROOT: usize = 45;
-/// The most public types of `eeruf-core`.
+/// The largest number of public types of `eeruf-core`.
 const TYPES: usize = 77;
 
 /// Lists each crate's interface, with all features, and compares that of `eeruf-core` with [`NAMES_AT_ROOT`] and
@@ -67,7 +67,7 @@ fn declared(line: &str) -> Option<String> {
     for (at, letter) in item.char_indices() {
         match letter {
             '<' => depth += 1,
-            // Not the arrow before what is returned.
+            // Not the arrow before a return type.
             '>' if depth > 0 && !item[..at].ends_with('-') => depth -= 1,
             _ if depth == 0 => plain.push(letter),
             _ => {}
@@ -109,10 +109,10 @@ fn types_at_two_places(api: &str) -> Vec<String> {
     twice
 }
 
-/// Returns all public items of a crate, one a line, without those that every type has.
+/// Returns all public items of a crate, one per line, without those that every type has.
 fn interface(name: &str) -> Result<String> {
     let mut cargo = cargo_of_version(RUST)?;
-    // JSON is not stable. In a folder of its own, since build scripts run again where this variable comes and goes.
+    // JSON is not stable. It has a folder of its own, since build scripts run again whenever this variable changes.
     cargo.env("RUSTC_BOOTSTRAP", "1").env("CARGO_TARGET_DIR", "target/api");
     cargo.args(["rustdoc", "--quiet", "--locked", "--package", name, "--lib", "--all-features", "--"]);
     run(cargo.args(["-Zunstable-options", "--output-format", "json", "--cap-lints", "allow"]))?;

@@ -101,8 +101,8 @@ pub(crate) fn arduino(plan: &Plan, steps: &mut Steps) {
     steps.step("other work in loop(), a corner", || loads::run(&library, None, false));
 }
 
-/// Packs the library as it is installed, its files and those of `c/`, as the `.zip` that the IDE takes, and unpacks it
-/// into a folder `libraries`, as the IDE does.
+/// Packs the library, with its own files and those of `c/`, as the `.zip` that the IDE installs, and unpacks it into a
+/// folder `libraries`, as the IDE does.
 pub(crate) fn pack() -> Result<PathBuf> {
     let target = Path::new(TARGET);
     let (library, libraries) = (target.join("Eeruf"), target.join("libraries"));

@@ -1,5 +1,5 @@
 //! Parts of documents that are made elsewhere. A program's output has a comment before it with the command, and
-//! `<!-- end -->` behind it. A listing is a part of a compiled file: `<!-- listing: FILE [from TEXT] [to TEXT] -->`
+//! `<!-- end -->` after it. A listing is a part of a compiled file: `<!-- listing: FILE [from TEXT] [to TEXT] -->`
 //! before a code block says which.
 
 use anyhow::{Context as _, Result, ensure};

@@ -11,7 +11,7 @@ use fs_err as fs;
 use crate::steps::{empty, need, output, run};
 
 const STRICT: [&str; 7] = ["-Wall", "-Wextra", "-Werror", "-pedantic", "-Wconversion", "-Wshadow", "-Ic"];
-/// Compilers and the languages that each takes the library as.
+/// Compilers, and the languages as which each compiles the library.
 const COMPILERS: [(&str, &[&str]); 7] = [
     ("gcc", &["-std=c99"]),
     ("gcc", &["-std=c17"]),
@@ -137,7 +137,7 @@ fn overlay_header(overlay: &str) -> Result<String> {
 fn equal_under_sanitizers() -> Result<()> {
     let host = output(Command::new("rustc").args(["--print", "host-tuple"]))?;
     let asan = output(Command::new("gcc").arg("-print-file-name=libasan.so"))?;
-    // With a target named, so that build scripts are built as ever. The sanitizer must be loaded before all else.
+    // A target is named so that build scripts are built as usual. The sanitizer must be loaded before everything else.
     let runner = format!("CARGO_TARGET_{}_RUNNER", host.to_uppercase().replace('-', "_"));
     run(Command::new("cargo")
         .args(["test", "--quiet", "--locked", "--package", "eeruf-c-equal", "--target", &host, "--tests"])

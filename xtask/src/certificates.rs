@@ -1,5 +1,5 @@
 //! `cargo xtask certificates`: designs every ring of the tables and of `rings/`, and has the checker judge their
-//! certificates; then those of the tests, many more of each.
+//! certificates; then certificates of the tests, many more of each kind than there.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;

@@ -28,7 +28,7 @@ pub(crate) fn deb(plan: &Plan) -> Result<()> {
         println!("the package has no notices: `cargo xtask notices` makes them, for one that goes to others");
     }
     fs::create_dir_all(HOME)?;
-    // It says where the package is.
+    // The command prints the package's path.
     let said = output(&mut command(&format!("cargo deb --package eeruf-ros2 --locked --strip --output {HOME}")))?;
     let package = absolute(said.lines().last().unwrap_or_default())?;
     println!("{}", package.display());
@@ -56,7 +56,7 @@ fn test(package: &Path) -> Result<()> {
     let python = crate::ros2::environment()?;
     let root = absolute(Path::new(HOME).join("clean"))?;
     let terminals = root.join("dev/pts");
-    // A run that broke off leaves a mount there, and all behind it would be removed, too.
+    // An aborted run leaves a mount there, and everything in it would be removed too.
     if output(Command::new("mountpoint").arg("-q").arg(&terminals)).is_ok() {
         run(Command::new("umount").arg(&terminals))?;
     }

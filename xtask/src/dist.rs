@@ -89,7 +89,7 @@ struct Compiler {
 }
 
 impl Compiler {
-    /// The default compiler if it has the target; else the one whose sources of the standard library are here.
+    /// The default compiler if it has the target; else the one whose sources of the standard library are installed.
     fn of(target: &str) -> Result<Self> {
         let has_sources = |root: &Path| root.join("lib/rustlib/src/rust/library/Cargo.lock").exists();
         if has_library("std", target) {
@@ -118,7 +118,7 @@ impl Compiler {
             .map(|(from, to)| format!("--remap-path-prefix={}={to}", from.display()));
         let mut flags = flags.join(" ");
         if !self.environment.is_empty() {
-            // Sources bring no start-up files of musl's; zig has them.
+            // The sources have no start-up files of musl; zig has them.
             flags += " -Clink-self-contained=no";
         }
         let time = output(Command::new("git").args(["log", "-1", "--format=%ct"]))?;

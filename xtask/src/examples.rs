@@ -24,7 +24,7 @@ pub(crate) fn examples(only: Option<&str>, steps: &mut Steps) {
     }
 }
 
-/// Builds an example from an empty folder, as `docs/how-to/firmware.md` does, and holds its program to what that says.
+/// Builds an example from an empty folder, as `docs/how-to/firmware.md` does, and checks its program's length.
 fn build(board: &str, target: &str) -> Result<()> {
     let example = Path::new("examples").join(board);
     run(Command::new("cargo").current_dir(&example).args(["fmt", "--check"]))?;
@@ -39,7 +39,7 @@ fn build(board: &str, target: &str) -> Result<()> {
     let by_path = fs::read_to_string(&manifest)?.replace("../..", &checkout.to_string_lossy());
     fs::write(manifest, by_path)?;
     let mut cargo = cargo_for_target(target)?;
-    // One folder for all, but not for two compilers.
+    // One folder for all examples, but not for two compilers.
     let shared = absolute(Path::new("target/examples").join(if is_debian(&cargo) { "debian" } else { "rustup" }))?;
     cargo.env("CARGO_TARGET_DIR", &shared).current_dir(&folder);
     run(cargo.args(["build", "--quiet", "--release", "--locked", "--target", target]))

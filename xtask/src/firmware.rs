@@ -100,12 +100,12 @@ fn image(board: &Board, name: &str) -> Result<PathBuf> {
     Ok(Path::new("firmware").join(target_folder(&cargo)).join(board.target).join("release").join(name))
 }
 
-/// Runs an image, with `2^shift` ns an instruction. Returns its output if it exits with 0 within five minutes.
+/// Runs an image, with `2^shift` ns per instruction. Returns its output if it exits with 0 within five minutes.
 fn run_image(board: &Board, name: &str, shift: u32) -> Result<String> {
     qemu(board, &image(board, name)?, shift)
 }
 
-/// Returns the command that runs an image on a board, with `2^shift` ns an instruction.
+/// Returns the command that runs an image on a board, with `2^shift` ns per instruction.
 fn emulator(board: &Board, image: &Path, shift: u32) -> Command {
     let mut qemu = Command::new(board.qemu);
     qemu.args(board.machine)

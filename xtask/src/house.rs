@@ -1,5 +1,5 @@
-//! Rules for sources that no linter has: in Rust lengths of lines and files and vague phrases, everywhere openings of
-//! doc comments. CONTRIBUTING.md has the reasons.
+//! Rules for sources that no linter has: for Rust, lengths of lines and files and vague phrases; for all languages,
+//! openings of doc comments. CONTRIBUTING.md has the reasons.
 
 use std::fmt::Write as _;
 use std::process::Command;
@@ -47,7 +47,7 @@ const EMITTED: &str = "tests/claims/emitted/";
 
 /// Checks every source in Rust, Python and C of the repository.
 pub(crate) fn check() -> Result<()> {
-    // Files that are about to be added, too.
+    // Includes files that are about to be added.
     let listing = ["ls-files", "--cached", "--others", "--exclude-standard"];
     let sources = ["*.rs", "*.py", "*.pyi", "*.c", "*.h", "*.cpp"];
     let listed = output(Command::new("git").args(listing).args(sources));

@@ -21,7 +21,7 @@ pub(crate) struct Link {
 pub(crate) fn check_documents() -> Result<()> {
     let listed = output(Command::new("git").args(["ls-files", "*.md"]))?;
     let mut texts = BTreeMap::new();
-    // What is the book's alone is named as it lies in the book, whose builder looks for each.
+    // Documents of the book alone use the book's paths, which its builder checks.
     for document in listed.lines().map(Path::new).filter(|document| !document.starts_with("site")) {
         texts.insert(document.to_owned(), fs::read_to_string(document)?);
     }

@@ -99,7 +99,7 @@ fn differences(
 }
 
 /// Returns true if a cell matches the measured one. A number is a timing if it stands before `us` or `ms`, or after a
-/// word in `_us`.
+/// word that ends in `_us`.
 fn is_same(expected: &str, measured: &str) -> bool {
     let words = |cell: &str| cell.split_whitespace().map(|word| word.trim_end_matches(',').to_owned()).collect();
     let (expected, measured): (Vec<String>, Vec<String>) = (words(expected), words(measured));

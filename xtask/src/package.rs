@@ -25,7 +25,7 @@ pub(crate) fn package(steps: &mut Steps) {
             for verb in ["build", "test"] {
                 let mut cargo = Command::new("cargo");
                 cargo.args([verb, "--all-features", "--manifest-path"]).arg(&manifest);
-                // Debug information is of no use here, and takes gigabytes.
+                // Debug information is useless here, and takes gigabytes.
                 cargo.env("CARGO_PROFILE_DEV_DEBUG", "0").env("CARGO_TARGET_DIR", folder().join("target"));
                 run(cargo.current_dir(folder()))?;
             }
@@ -56,7 +56,7 @@ fn pack() -> Result<Vec<String>> {
         ensure!(size <= LARGEST, "{tarball}: {size} bytes; expected at most {LARGEST}");
         run(Command::new("tar").args(["-xzf", tarball.as_str(), "-C"]).arg(&folder))?;
         fs::rename(folder.join(format!("{name}-{version}")), folder.join(name))?;
-        // Its own names crates that are not published yet; ours has the same versions of all others.
+        // The tarball's own lock file names unpublished crates; ours has the same versions of all others.
         fs::copy("Cargo.lock", folder.join(name).join("Cargo.lock"))?;
         patch += &format!("{name} = {{ path = {:?} }}\n", folder.join(name));
     }

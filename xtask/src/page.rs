@@ -50,7 +50,7 @@ pub(crate) fn page(tests: Tests) -> Result<()> {
     if tests == Tests::No {
         return build();
     }
-    // Linking the engine takes one core; what else the tests need is made meanwhile.
+    // Linking the engine takes one core; the other needs of the tests are prepared meanwhile.
     thread::scope(|scope| {
         let prepared = scope.spawn(prepare);
         build()?;
@@ -111,7 +111,7 @@ fn single(sources: &BTreeMap<String, String>, engine: &[u8]) -> Result<String> {
     for (name, text) in sources.iter().filter(|(name, _)| **name != PLATFORM[0]) {
         fs::write(format!("{BUNDLED}/{}", if name == PLATFORM[1] { PLATFORM[0] } else { name }), text)?;
     }
-    // What a script element holds ends at its end tag, and a comment begins in HTML too.
+    // The content of a script element ends at the first end tag, and HTML comments begin in it too.
     let plain = |text: String| {
         let is_plain = !text.contains("</script") && !text.contains("<!--");
         ensure!(is_plain, "a script holds </script or <!--, which ends it in HTML");
@@ -175,7 +175,7 @@ fn test(long: bool) -> Result<()> {
     let mut node = Command::new("node");
     node.current_dir(TESTS).args(["--test", "--test-reporter=spec"]);
     node.env("PAGE_LONG", if long { "1" } else { "" });
-    // Files run beside each other, but where figures are printed. Before Node 20.10 there is no such option.
+    // Test files run in parallel, except where figures are printed. Before Node 20.10 there is no such option.
     let beside = if long { "--test-concurrency=1" } else { "--test-concurrency=3" };
     if output(Command::new("node").args([beside, "--version"])).is_ok() {
         node.arg(beside);

@@ -2,7 +2,7 @@
 //! it.
 //!
 //! The command is `eeruf ARGUMENTS` or `cargo ARGUMENTS`. Words in brackets qualify it, as in `<!-- printed by (large,
-//! decimals are timings): COMMAND -->`: what takes long, and where numbers with a decimal point are timings, which are
+//! decimals are timings): COMMAND -->`: the command takes long, and numbers with a decimal point are timings, which are
 //! not compared.
 
 use std::process::Command;
@@ -90,7 +90,7 @@ pub(crate) fn reprint(document: &str) -> Result<()> {
     Ok(fs::write(document, fresh)?)
 }
 
-/// Returns the body of a part, without the fence around text that is no Markdown.
+/// Returns the body of a part, without the fence around text that is not Markdown.
 fn unfenced(body: &str) -> &str {
     let body = body.trim();
     body.strip_prefix(FENCE).map_or(body, |inner| inner.trim_end_matches("```").trim())

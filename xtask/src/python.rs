@@ -18,7 +18,7 @@ pub(crate) fn python() -> Result<()> {
     let home = Path::new(HOME);
     let python = tested()?;
     let wheels = home.join("wheels");
-    // Only the wheel that is built now.
+    // The folder then has only the wheel of this build.
     empty(&wheels)?;
     let tool = |name: &str| {
         let mut command = Command::new(&python);
@@ -36,7 +36,7 @@ pub(crate) fn python() -> Result<()> {
     run(tool("mypy").args(backend).args(typed))?;
     run(tool("mypy.stubtest").args(["eeruf", "--ignore-missing-stub", "--mypy-config-file", "pyproject.toml"]))?;
     fresh(&wheel)?;
-    // What Python is held against: the program, and the paths of the corpus.
+    // Python is compared with the program, and with the paths of the corpus.
     let (program, lab) = (crate::toolchain::program()?, crate::toolchain::lab()?);
     let mut tests = tool("pytest");
     tests.args(["--numprocesses", "auto"]);
@@ -44,7 +44,7 @@ pub(crate) fn python() -> Result<()> {
     run(&mut tests)
 }
 
-/// Builds the wheel as pip does from a clone, by the backend that the repository brings, into an empty folder.
+/// Builds the wheel as pip does from a clone, by the repository's own backend, into an empty folder.
 fn wheel(python: &Path, folder: &Path) -> Result<PathBuf> {
     let mut pip = Command::new(python);
     pip.args(["-m", "pip", "wheel", "--quiet", "--no-deps", "--no-build-isolation", ".", "--wheel-dir"]).arg(folder);
@@ -72,7 +72,7 @@ fn sources_are_whole(python: &Path, folder: &Path) -> Result<()> {
 /// now.
 pub(crate) fn reference(folder: &Path) -> Result<()> {
     let wheel = std::env::var("EERUF_WHEEL").unwrap_or_else(|_| ".".to_owned());
-    // Annotations name what they come from.
+    // Annotations name types of these packages.
     let packages = ["--force-reinstall", "pdoc", "pandas", "polars", &format!("{wheel}[plot]")];
     let python = environment(Path::new("target/python-reference"), &packages)?;
     run(Command::new(&python).arg("xtask/reference.py").arg(folder))

@@ -39,7 +39,7 @@ pub(crate) fn release(steps: &mut Steps) {
     });
     steps.step("licences and sources of dependencies", || {
         need("cargo deny --version", "cargo install cargo-deny --locked")?;
-        // Else it looks at the package in the root alone: not at the wheel, not at the ROS 2 node.
+        // Without `--workspace` it checks only the root package, not the wheel or the ROS 2 node.
         run_line("cargo deny --locked --workspace --log-level error check licenses bans sources")
     });
     steps.step("notices", notices);
@@ -51,24 +51,24 @@ pub(crate) fn release(steps: &mut Steps) {
     println!("{}", REMAINS.replace("{VERSION}", &version));
 }
 
-/// Writes the notices of what others wrote and is in program and wheel, as cargo-about finds it.
+/// Writes the notices for the work of others in program and wheel, as found by cargo-about.
 pub(crate) fn notices() -> Result<()> {
     need("cargo about --version", "cargo install cargo-about --locked --features cli")?;
-    // The wheel has the whole program within.
+    // The wheel contains the whole program.
     run_line(
         "cargo about generate --locked --fail --manifest-path crates/eeruf-py/Cargo.toml \
          --config packaging/notices/about.toml --output-file LICENSE-THIRD-PARTY.txt packaging/notices/notices.hbs",
     )?;
-    // Where the program was built without them, its build does not look for them.
+    // If the program was built without the notices, its build would not look for them again.
     Ok(fs::OpenOptions::new().append(true).open("build.rs")?.file().set_modified(SystemTime::now())?)
 }
 
-/// Writes what is in each published crate, as bills in `CycloneDX`. Packages of the workspace are named from its root,
-/// not from the disk's.
+/// Writes the contents of each published crate as a bill in `CycloneDX`. Packages of the workspace are named from its
+/// root, not from the disk's.
 pub(crate) fn materials() -> Result<()> {
     need("cargo cyclonedx --version", "cargo install cargo-cyclonedx --locked")?;
     let metadata = MetadataCommand::new().no_deps().exec()?;
-    // With a time of its own the bill has no number drawn at random either.
+    // With a given time, the bill has no random number either.
     let time = output(Command::new("git").args(["log", "-1", "--format=%ct"]))?;
     let mut cargo = Command::new("cargo");
     cargo.args(["cyclonedx", "--format", "json", "--spec-version", "1.5", "--target", "x86_64-unknown-linux-gnu"]);
@@ -132,7 +132,7 @@ mod tests {
         versions.sort_unstable();
         versions.dedup();
         assert_eq!(versions.len(), count);
-        // Users of a release have no clone. (What was cut comes back where a merge keeps both sides, and names some.)
+        // Users of a release have no clone. (A merge that keeps both sides can bring back removed names.)
         assert!(!text.contains("cargo xtask"));
     }
 }

@@ -28,7 +28,7 @@ pub(crate) fn ros2() -> Result<()> {
         tests.env("EERUF_FAST_DDS", program);
     }
     run(&mut tests)?;
-    // Without it, all but its tests have passed.
+    // Without Fast DDS, all other tests have passed.
     fast_dds.map(drop)
 }
 
@@ -64,7 +64,7 @@ pub(crate) fn package() -> Result<()> {
         ensure!(share.join(file).exists(), "{}: not installed", share.join(file).display());
     }
     run(Command::new("python3").args(["-m", "py_compile"]).arg(share.join("launch/eeruf.launch.py")))?;
-    // It reads its file, in a namespace, and ends before it joins a domain.
+    // The node reads its file, in a namespace, and ends before it joins a domain.
     let node = Command::new(installed.join("lib/eeruf_ros2/eeruf-ros2"))
         .args(["--ros-args", "-r", "__ns:=/robot_1", "--params-file"])
         .arg(share.join("config/eeruf.yaml"))

@@ -48,7 +48,7 @@ fn book() -> Result<()> {
     let sources = Path::new(SOURCES);
     empty(sources)?;
     copy_folder("docs/.", sources)?;
-    // The order of the chapters, and where the book leads to the references and the page; mdBook's settings lie beside.
+    // The order of the chapters, and the chapter of links to the references and the page; mdBook's settings are beside.
     for name in ["SUMMARY.md", "references.md"] {
         fs::copy(Path::new("site").join(name), sources.join(name))?;
     }
@@ -88,7 +88,7 @@ fn rewritten(document: &Path, text: &str) -> String {
         };
         let target = heading.map_or(target.clone(), |heading| format!("{target}#{heading}"));
         rewritten += &text[end..link.range.start];
-        // What is shown may be the target as well, and stands before it.
+        // The shown text may equal the target, and comes before it.
         let whole = &text[link.range.clone()];
         let at = whole.rfind(&link.target).unwrap_or(whole.len());
         rewritten += &[&whole[..at], &target, whole.get(at + link.target.len()..).unwrap_or_default()].concat();
@@ -105,7 +105,7 @@ fn links_lead_somewhere() -> Result<()> {
             continue;
         }
         let text = fs::read_to_string(&page)?;
-        // Within tags alone: listings show links as well.
+        // Only within tags, since listings show links too.
         let tags = text.split('<').filter_map(|tag| tag.split('>').next());
         let keys = |tag| ["href=\"", "src=\""].map(|key| str::split(tag, key).nth(1)).into_iter().flatten();
         for target in tags.flat_map(keys).filter_map(|rest| rest.split('"').next()) {

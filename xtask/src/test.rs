@@ -43,7 +43,7 @@ pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
     };
     let beside = Beside::begin(&BESIDE);
     steps.step("each feature of the core alone", || each_feature_alone(&metadata));
-    // What the default compiler can build, Clippy has just built with it.
+    // Clippy has just built everything with the default compiler.
     let default = version_of("rustc").unwrap_or_default();
     for (version, packages) in packages_by_version(&metadata) {
         if default == version {
@@ -110,7 +110,7 @@ fn unit_tests_of_what_changed() -> Result<()> {
 }
 
 fn each_feature_alone(metadata: &Metadata) -> Result<()> {
-    // Firmware links the core. `cargo xtask release --dry-run` builds each other crate alone, out of its tarball.
+    // Firmware links the core. `cargo xtask release --dry-run` builds each other crate alone, from its tarball.
     let check = "cargo check --package eeruf-core --locked --no-default-features";
     run_line(check)?;
     let core = metadata.workspace_packages().into_iter().find(|package| package.name == "eeruf-core");

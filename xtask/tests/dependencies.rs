@@ -20,7 +20,7 @@ fn quoted(text: &str) -> BTreeSet<&str> {
     text.split('`').skip(1).step_by(2).collect()
 }
 
-/// The direct dependencies that are not our own, of all kinds, in all workspaces, and who has them.
+/// The direct dependencies of all kinds that are not our own, in all workspaces, with the packages that have them.
 fn dependencies() -> BTreeMap<String, BTreeSet<String>> {
     let mut found = BTreeMap::<_, BTreeSet<_>>::new();
     let examples = ["esp32-c3", "nucleo-f401", "pico"].map(|name| format!("examples/{name}"));
@@ -36,7 +36,7 @@ fn dependencies() -> BTreeMap<String, BTreeSet<String>> {
     found
 }
 
-// Every direct dependency is named with its reason and no other.
+// Every direct dependency is named with its reason, and no others are.
 #[test]
 fn direct_dependencies_are_named_with_reasons() {
     let (document, dependencies) = (document(), dependencies());
@@ -44,7 +44,7 @@ fn direct_dependencies_are_named_with_reasons() {
     let named = quoted(&text);
     let missing: Vec<_> = dependencies.iter().filter(|(name, _)| !named.contains(name.as_str())).collect();
     assert!(missing.is_empty(), "docs/project/dependencies.md does not name {missing:?}");
-    // The first column of the table is of dependencies alone.
+    // The first column of the table has only dependencies.
     let rows = document.lines().filter_map(|line| line.strip_prefix("| `"));
     let first: Vec<_> = rows.map(|row| row.split('|').next().unwrap()).collect();
     assert!(first.len() > 15, "{first:?}");

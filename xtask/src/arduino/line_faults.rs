@@ -29,7 +29,7 @@ const FAULTS: [(&str, &str); 9] = [
     ("hold-130:3", "hold of 130 ms"),
     ("hold-200:3", "hold of 200 ms"),
 ];
-/// The faults of a sketch whose interrupts hand in the level that they see, by the table of the file.
+/// The faults of a sketch whose interrupts pass on the level that they see, with their names in the file.
 const EDGE_FAULTS: [(&str, &str, &[&str]); 6] = [
     ("hold-38:2", "healthy", &PLACES),
     ("lost-rise:2", "lost rising edge", &PLACES),
@@ -70,7 +70,7 @@ fn rows(file: &str) -> impl Iterator<Item = Vec<&str>> {
 }
 
 impl Says {
-    /// Returns the file's state for a fault in this place. A clone before a wall counts as healthy.
+    /// Returns the file's state for a fault in this place. A clone in front of a wall counts as healthy.
     fn of(file: &str, fault: &str, place: &str) -> Result<Self> {
         let names = if place == "wall" && fault.starts_with("hold of") { "healthy" } else { fault };
         let mut rows = rows(file).filter(|row| row.first() == Some(&names) && row.len() == 6);
@@ -106,14 +106,13 @@ fn counts(words: &[&str]) -> [usize; 4] {
     counts
 }
 
-/// Returns the smallest number of distances that a sketch prints of one of these modules.
+/// Returns the smallest number of distances that a sketch prints for one of these modules.
 fn least_distances(said: &str, modules: impl IntoIterator<Item = usize>) -> usize {
     let distances = |module| counts(&words_of(said, module))[Says::Wall as usize];
     modules.into_iter().map(distances).min().unwrap_or(0)
 }
 
-/// Returns a sketch's output about modules of which one has a fault; each stands before its own wall, at this echo
-/// time.
+/// Returns a sketch's output about modules, one of which has a fault; each faces its own wall, at this echo time.
 fn with_fault(
     world: &Path,
     elf: &Path,
@@ -128,7 +127,7 @@ fn with_fault(
 /// A fault, its surroundings, and its numbers of readings: right ones, all, and those without evidence.
 type Outcome = (&'static str, &'static str, [usize; 3]);
 
-/// Returns the document with these cells in the column, by fault and surroundings; a row for several of them takes the
+/// Returns the document with these cells in the column, by fault and surroundings; a row for several of them has the
 /// sum.
 fn with_column(document: &str, said: &[Outcome]) -> Result<String> {
     let head = document.lines().find(|line| line.starts_with("| fault")).map(cells).unwrap_or_default();
@@ -170,7 +169,7 @@ pub(super) fn run(library: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Runs Ring8 with a faulty module before a wall and before nothing; the others must read their walls.
+/// Runs Ring8 with a faulty module that faces a wall, or nothing; the others must read their walls.
 fn faults_of_ring8(library: &Path, world: &Path, file: &str) -> Result<Vec<Outcome>> {
     const FAULTY: usize = 3;
     let sketch = build::example(library, "Ring8")?;
@@ -181,7 +180,7 @@ fn faults_of_ring8(library: &Path, world: &Path, file: &str) -> Result<Vec<Outco
             let wall = |module| (module != FAULTY || place == "wall").then_some(EQUAL_US + 500 * module as u32);
             let walls: Vec<_> = (1..=8).map(wall).collect();
             let said = with_fault(world, &sketch.elf, fault, 3, &walls, &ALL)?;
-            // The wires of the one after it are exchanged with its own.
+            // The wires of this module and the next one are exchanged.
             let exchanged = fault.starts_with("exchanged");
             let others = (1..=8).filter(|&module| module != FAULTY && !(exchanged && module == FAULTY + 1));
             let least = least_distances(&said, others);
@@ -261,8 +260,8 @@ fn latched_line_recovers(library: &Path, world: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Checks States4 with a flow ring in place of its table: a module before nothing is clear, one without power does not
-/// answer, and the others keep reporting their walls.
+/// Checks States4 with a flow ring in place of its table: a module that faces nothing is clear, one without power does
+/// not answer, and the others keep reporting their walls.
 fn flow_says_states(library: &Path, world: &Path) -> Result<()> {
     const SHOWN: usize = 3;
     let name = "examples/States4/States4.ino";
@@ -299,6 +298,6 @@ fn table_of(file: &str) -> Result<String> {
     let period = Micros::new(period.parse().map_err(|_| wrong())?);
     let requirements = Requirements::new(Micros::new(240));
     let schedule = Schedule::<4>::from_firing(period, [times(a)?, times(b)?]).map_err(|_| wrong())?;
-    // It stands in the sketch itself.
+    // The table becomes part of the sketch itself.
     Ok(schedule.to_arduino(&requirements, "LINE_FAULTS").replace("#pragma once\n", ""))
 }

@@ -1,5 +1,5 @@
-//! Other work in a sketch's `loop()`: readings of a flow ring that are right and wrong, polled and by interrupt, in the
-//! alcove, in a larger one, and before walls of their own.
+//! Other work in a sketch's `loop()`: right and wrong readings of a flow ring, polled and by interrupt, in the alcove,
+//! in a larger one, and with a separate wall for each module.
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -26,7 +26,7 @@ const DRAWN: usize = 20;
 const FILE: &str = "tests/data/arduino-loads.csv";
 const POLLED: &str = "polled";
 const OWN_WALLS: &str = "own walls";
-/// Time for which each runs.
+/// Time for which each load runs, in seconds.
 const SECONDS: u32 = 3;
 /// Numbers of the loads that run in CI, with six modules in the alcove.
 const CORNER: [usize; 3] = [1, 11, 18];
@@ -48,7 +48,7 @@ pub(super) struct Load {
     least: f64,
     /// Largest number of wrong readings a second: polled, and by interrupt.
     most: [f64; 2],
-    /// The least share of accepted firings by interrupt, in percent, before walls of their own.
+    /// The least share of accepted firings by interrupt, in percent, with separate walls.
     accepted: f64,
 }
 
@@ -87,7 +87,7 @@ pub(super) const KINDS: [Load; 23] = [
     Load { baud: 9_600, ..load(1_000, 5_000, 0.0) },
 ];
 
-/// A number below another, drawn.
+/// Draws a number below another one.
 pub(super) fn up_to(state: &mut u64, most: u32) -> u32 {
     *state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
     ((*state >> 33) % u64::from(most)) as u32
@@ -163,8 +163,8 @@ struct Place {
     own_mm: BTreeMap<usize, u32>,
 }
 
-/// The alcove; walls of their own from 0.4 to 3.4 m, by the golden section so that no two are alike; and the alcove 1.6
-/// times as large, where a module's sound is still heard after 10 ms, for eight modules.
+/// The alcove; separate walls at 0.4 to 3.4 m, spaced by the golden section so that no two are alike; and the alcove
+/// 1.6 times as large, where a module's sound is still heard after 10 ms, for eight modules.
 fn places() -> Result<[Place; 3]> {
     let alcove = fs::read_to_string(world::KEPT)?;
     let own = (0..8).map(|module| format!("{module} {module} {}\n", 2_300 + module * 618 % 1000 * 175 / 10)).collect();
@@ -230,7 +230,7 @@ impl Ring<'_> {
             let heard = world::hear_by(&mut command, seconds, &self.place.own_mm)?.under_load();
             let UnderLoad { right, wrong, wrong_percent, own_later, accepted_percent, worst, starved, slow_ms } = heard;
             let said = slow_ms.map_or(String::new(), |ms| ms.to_string());
-            // NewPing compares with nothing.
+            // NewPing does not compare readings.
             let accepted = load.map_or(String::new(), |_| format!("{accepted_percent:.1}"));
             let per_second = format!("{right:.1},{wrong:.1},{wrong_percent:.1},{own_later:.1}");
             let figures = format!("{per_second},{accepted},{worst:.1},{starved},{said}");
@@ -272,7 +272,7 @@ pub(super) fn run(library: &Path, newping: Option<&Path>, all: bool) -> Result<(
         let in_place = |number: usize| if all { number < RINGS.len() || *modules > RINGS[0] } else { number == 0 };
         for (number, place) in places.iter().enumerate().filter(|(number, _)| in_place(*number)) {
             let is_compared = *modules == RINGS[0] && number == 0;
-            // Those that are drawn: once in each place, and for each ring.
+            // Drawn loads run once in each place, and once for each ring.
             let is_diagonal = RINGS.get(number) == Some(modules);
             let kinds = || loads[..if is_diagonal { loads.len() } else { KINDS.len() }].iter().enumerate();
             let mut runs = vec![];

@@ -53,7 +53,7 @@ pub(super) fn run(library: &Path) -> Result<()> {
     Ok(())
 }
 
-/// Returns the output of a sketch whose modules each stand before a wall of their own.
+/// Returns the output of a sketch whose modules each face a wall of their own.
 fn heard(library: &Path, world: &Path, example: &Example, name: &str, text: &str) -> Result<String> {
     let sketch = build::ours(library, Board::Uno, name, text, &[])?;
     let walls: Vec<_> = (0..example.modules() as u32).map(|module| Some(6_000 + 1_300 * module)).collect();

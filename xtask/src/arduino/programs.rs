@@ -1,5 +1,5 @@
 //! `cargo xtask programs`: builds the output of `eeruf design --program` like a user, and runs it: on modules that each
-//! stand before a wall of their own, and sketches also in an alcove where modules hear each other. `--combinations`
+//! face a wall of their own, and sketches also in an alcove where modules hear each other. `--combinations`
 //! draws way, language, number of modules, and other work of the loop.
 
 use std::path::Path;
@@ -61,8 +61,8 @@ const COUNTED: &str = "  if (!sonar.read()) return;
   if (Serial.availableForWrite() < 14) return;
 ";
 
-/// Shares in percent: accepted firings, of all and of the worst module; wrong ones among the accepted, before walls and
-/// in the alcove. Also true if the program reports that it is too slow.
+/// Shares in percent: accepted firings, of all and of the worst module; wrong ones among the accepted, with walls and
+/// in the alcove; and true if the program reports that it is too slow.
 #[derive(Default)]
 struct Figures {
     accepted: f64,
@@ -72,7 +72,7 @@ struct Figures {
     says_so: bool,
 }
 
-/// Runs all, or a few of them for a few seconds, or what is drawn.
+/// Runs all programs, or a few of them for a few seconds, or drawn combinations.
 pub(crate) fn programs(drawn: &Drawn, short: bool) -> Result<()> {
     let folder = Path::new("target/programs");
     empty(folder)?;
@@ -84,7 +84,7 @@ pub(crate) fn programs(drawn: &Drawn, short: bool) -> Result<()> {
         _ => &[],
     };
     for ring in rings {
-        // Its sensors have limits of their own, which MicroPython's ring has not.
+        // The car's sensors have limits of their own, which MicroPython's ring does not support.
         let languages = &LANGUAGES[..if *ring == CAR_12 { 3 } else { 4 }];
         asked.extend(languages.iter().chain(OF_CAR.iter().filter(|_| *ring == CAR)).map(|options| Asked {
             ring: (*ring).to_owned(),
@@ -180,7 +180,7 @@ impl Asked {
             Some(_) if polled || self.options.contains("two-phases") || says_so => (0.0, 0.0),
             Some(_) => (70.0, 70.0),
         };
-        // In the alcove those of a group hear one another, wherefore groups are not recommended for it.
+        // In the alcove, sensors of a group hear each other, so groups are not recommended there.
         let foreign = in_alcove.filter(|_| !self.options.contains("groups")).map_or(0.0, |(_, foreign)| foreign);
         let mut row =
             format!("{accepted:.1} % | {worst:.1} %{} | {wrong:.1} %", if says_so { ", says so" } else { "" });
@@ -189,7 +189,7 @@ impl Asked {
             accepted >= least && worst >= least_of_worst && wrong == 0.0 && foreign <= 1.0,
             "{row}; expected {least} % accepted, {least_of_worst} % of the worst module, and 1 % wrong in the alcove"
         );
-        // By all but tables a late poll costs time alone.
+        // Except for tables, a late poll costs only time.
         ensure!(
             !says_so || self.load.is_some_and(|load| load.work_us > 0),
             "{row}; expected that it does not say that it is too slow"
@@ -208,7 +208,7 @@ impl Asked {
     /// load from the environment.
     fn counted(&self, harness: &mut Command) -> Result<Figures> {
         let ran = harness.env("LOAD", self.work().join(" ")).output()?;
-        // The emulated board speaks on standard error.
+        // The emulated board writes to standard error.
         let said = [ran.stdout, ran.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).concat();
         ensure!(ran.status.success(), "{}: {said}", ran.status);
         let numbers = |line: &str| line.split(' ').map(|word| word.parse::<f64>().ok()).collect::<Option<Vec<_>>>();
@@ -268,7 +268,7 @@ impl Asked {
             (None, _) => Some(format!("{line}\n")),
         };
         let heard = Heard::of(&said.lines().filter_map(read).collect::<String>(), &own_mm);
-        // Where every echo counts, so does the first, which they leave out.
+        // If every echo is believed, so is the first, which the shares leave out.
         let (accepted, worst) = (heard.shares().0.min(100.0), heard.shares().1.0.min(100.0));
         let wrong = heard.wrong_percent();
         let mut in_alcove = None;
@@ -361,7 +361,7 @@ fn rust(folder: &Path, [work, every, span]: &[String; 3]) -> Result<Command> {
     let root = root.to_string_lossy();
     let mut values = vec![("NAME", &*name), ("ROOT", &root), ("WORK", work), ("EVERY", every), ("SPAN", span)];
     if !fs::read_to_string(folder.join("src/lib.rs"))?.contains("seed: u32") {
-        // A table has no dice, and asks for no speed.
+        // A table has no dice, and needs no speed.
         values.extend([("7, now", "now"), ("    ring.moving(0, 0, now);\n", "")]);
     }
     let harness = |file: &str| {

@@ -36,7 +36,7 @@ pub(super) fn run(library: &Path) -> Result<()> {
         let sensors = found["sensors"].as_array().context("no sensors")?;
         let like = sensors.iter().filter(|sensor| sensor["is_like"] == true).count();
         println!("{method}: {like} of {} sensors are as simulated", sensors.len());
-        // This world loses no echo, as the simulator does now and then.
+        // This world loses no echoes, and the simulator loses some.
         ensure!(like + 2 >= MODULES, "{method}: {found:#}");
     }
     let logs = Command::new(program()?).args(["logs", "--json"]).arg(&log).output()?;

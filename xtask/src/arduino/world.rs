@@ -40,9 +40,9 @@ pub(super) struct Heard {
     by_cause: [u32; 3],
 }
 
-/// Readings a second that a sketch with other work accepts: right ones, wrong ones, and own later echoes measured as
-/// they came; the share of accepted firings, and the right readings of the worst module; the modules with fewer than
-/// one in two seconds, and the time in milliseconds of the first report that it is too slow.
+/// Figures of a sketch with other work: right readings, wrong ones, and correctly measured own later echoes, each per
+/// second; the share of accepted firings; the right readings of the worst module; the modules with fewer than one in
+/// two seconds; and the time in milliseconds of the first report that the loop is too slow.
 pub(super) struct UnderLoad {
     pub(super) right: f64,
     pub(super) wrong: f64,
@@ -111,7 +111,7 @@ pub(super) fn command(world: &Path, options: &[&str], elf: &Path, seconds: u32, 
     command
 }
 
-/// The output of a sketch whose modules each stand before a wall at this echo time, or before nothing.
+/// The output of a sketch whose modules each face a wall at this echo time, or nothing.
 pub(super) fn before_walls(
     world: &Path,
     elf: &Path,
@@ -149,8 +149,8 @@ impl Heard {
     /// The figures in the output of a sketch and of the world, with the distance that each module should measure.
     pub(super) fn of(said: &str, own_mm: &BTreeMap<usize, u32>) -> Self {
         let mut heard = Self::default();
-        // The cause that ended each module's last pulse, and its width as a distance; a sketch says its reading before
-        // the module fires again.
+        // The cause that ended each module's last pulse, and its width as a distance; a sketch prints the reading
+        // before the module fires again.
         let mut causes: BTreeMap<usize, (usize, u32)> = BTreeMap::new();
         for line in said.lines() {
             let words: Vec<&str> = line.split_whitespace().collect();
@@ -182,7 +182,7 @@ impl Heard {
     }
 
     /// The shares of accepted firings in percent: of all, and of the worst module, which is counted from 1. The first
-    /// firing of each is compared with nothing.
+    /// firing of each module is not compared.
     pub(super) fn shares(&self) -> (f64, (f64, usize)) {
         let share = |accepted: u32, compared: u32| 100.0 * f64::from(accepted) / f64::from(compared.max(1));
         let of = |module: usize| self.by_module.get(&module).copied().unwrap_or(0);
@@ -208,7 +208,7 @@ impl Heard {
         self.own_later += u32::from(CAUSES[cause] == "own" && width_mm.abs_diff(mm) <= OFF_MM);
     }
 
-    /// The readings of a sketch with other work. An own later echo that was measured as it came is not wrong.
+    /// The figures of a sketch with other work. An own later echo that was measured correctly is not wrong.
     pub(super) fn under_load(&self) -> UnderLoad {
         let per_second = |count: u32| f64::from(count) / f64::from(self.seconds);
         let wrong = self.wrong - self.own_later;

@@ -37,7 +37,7 @@ pub(super) fn stack<const N: usize>(
     program: &str,
     functions: [&'static str; N],
 ) -> Result<[(&'static str, u64); N]> {
-    // Rustup's core says nothing of its frames; where it was built here, all must be known.
+    // Rustup's core does not state its frames; if core was built here, all frames must be known.
     let all_known = is_debian(&cargo(board)?);
     let image = image(board, program)?;
     let calls = Program::new(

@@ -1,5 +1,5 @@
-// A flow ring whose loop() has other work, which the EEPROM says: for how long, begun so long after the one before began
-// or in each turn, with interrupts masked, or when no line is awaited.
+// A flow ring whose loop() has other work, as described in the EEPROM: its duration, the time from one start to the next
+// (or in each turn), and whether it masks interrupts or waits until no line is awaited.
 #if POLLED
 #define EERUF_POLLED
 #endif

@@ -1,4 +1,4 @@
-// The same ring with eeruf: by its table, or by the first phase of it over and over, so that all waits are constant.
+// The same ring with eeruf: by its table, or by the table's first phase over and over, so that all waits are constant.
 #include <EerufTables.h>
 
 #if MODULES == 12
@@ -14,7 +14,7 @@ const uint8_t PINS[] = {2, 3, 4, 5, 6, 7, 8, 9};
 #endif
 
 #if CONSTANT
-// It claims to be verified, which nothing with one phase can be, so that the same class runs it.
+// Marked as verified so that the same class runs it, although a table with one phase cannot be.
 static const EerufSchedule RING EERUF_FLASH = {
   EERUF_VERSION, MODULES, 1, TABLE(_order), TABLE(_gap_us), PERIOD_US, PERIOD_US,
   T_DELTA_US, 14569u, 60000u, 1000u, EERUF_AS_T_DELTA, PERIOD_US, 1, EERUF_LAYOUT_RING, 4, 0, NULL,

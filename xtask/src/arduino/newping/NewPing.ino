@@ -1,5 +1,5 @@
-// A ring with NewPing's own means: one module every 33 ms, timed by its interrupts, as its documents say for several; or
-// with WAIT_MS one after the other, each waited for, and so long between them.
+// A ring with NewPing's own means: one module every 33 ms, timed by its interrupts, as its documents recommend; or with
+// WAIT_MS one module after the other, waiting for each echo, with a pause of this length between them.
 #include <NewPing.h>
 
 const uint16_t INTERVAL_MS = 33, MOST_CM = 400;

@@ -323,7 +323,7 @@ class SetOne(Table):
 
 @dataclass(frozen=True, eq=False)
 class Run(Result):
-    """The outcome of one course of Set II under one method. Runs are equal if all their numbers are; they pickle.
+    """The outcome of one course of Set II under one method. Runs pickle, and are equal if all their numbers are.
 
     Example:
         >>> import eeruf

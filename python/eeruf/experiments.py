@@ -222,8 +222,8 @@ def recommend(
     Returns:
         A dict: ``recommended``, the name of the way; ``keeps``, whether it keeps to the limits in each kind of room; ``assumed``, the
         assumptions where the file is silent; ``ways``, each with ``way``, ``title`` and ``rooms``, its figures by kind of room;
-        ``elsewhere``, the ways with another gain and height; and with ``cost`` also ``by_cost``, the kinds of ways in the order in
-        which the ring sees a new object soonest, under the conditions in the file.
+        ``elsewhere``, the ways with another gain and height; and with ``cost`` also ``by_cost``, the kinds of ways ordered by how
+        soon the ring sees a new object, under the conditions in the file.
 
     Raises:
         EerufError: a number is out of range, or the file cannot be read or does not say where its sensors are.

@@ -69,7 +69,7 @@ if TYPE_CHECKING:
 
 
 def is_kind(name: str) -> TypeGuard[_Kind]:
-    """Return true if a name is a kind of readings, and tell that to type checkers.
+    """Return true if a name is a kind of readings; type checkers then narrow its type.
 
     Args:
         name: a string from elsewhere, such as a log.
@@ -84,7 +84,7 @@ def is_kind(name: str) -> TypeGuard[_Kind]:
 
 
 def is_method(name: str) -> TypeGuard[_MethodName]:
-    """Return true if a name is that of a method, and tell that to type checkers.
+    """Return true if a name is that of a method; type checkers then narrow its type.
 
     Args:
         name: a string from elsewhere, such as a command line.

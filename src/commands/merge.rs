@@ -13,7 +13,7 @@ use super::experiment::{Part, Shard, merged};
 use super::{Cli, LabVerb, Verb};
 use crate::files::error::InputError;
 
-/// Join the parts that `eeruf lab experiment --shard` printed to the undivided run, bit for bit.
+/// Join the parts that `eeruf lab experiment --shard` printed into the undivided run, bit for bit.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// The parts, in any order

@@ -493,7 +493,7 @@ def mutated(c: Chance, text: str) -> str:
 
 
 def tampered(c: Chance) -> Any:
-    """Make readings from columns with a change."""
+    """Make readings from tampered columns."""
     reduced: Any = READINGS.__reduce__()
     rebuild, (method, duration_s, sensors, columns, paths) = reduced
     name = c.random.choice(list(columns))

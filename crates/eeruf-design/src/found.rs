@@ -23,10 +23,10 @@ pub struct FoundJson {
     pub nodes: u64,
     /// Duration of the search.
     pub seconds: f64,
-    /// Reason why nothing is better; only from `design`.
+    /// Reason why no period is shorter; only from `design`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub reason: Option<String>,
-    /// True if the atlas answered, and nothing was searched; only from `design`.
+    /// True if the answer came from the atlas, without a search; only from `design`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub from_atlas: Option<bool>,
     /// Bound of the period by a short certificate, if the period is proven; only from `design`.

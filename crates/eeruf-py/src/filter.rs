@@ -1,4 +1,4 @@
-//! `EchoFilter`.
+//! `EchoFilter`: the paper's filter alone, without a ring.
 
 use eeruf_core::{MAX_SENSORS, Micros, SensorError, judge::Verdict};
 use numpy::prelude::*;

@@ -1,4 +1,4 @@
-//! `Report` and its `Violation`s.
+//! `Report`, the result of `Schedule.verify`, with its `Violation`s.
 
 use eeruf_core::{MAX_SENSORS, Micros, conditions::Verification};
 use pyo3::{prelude::*, types::PyTuple};

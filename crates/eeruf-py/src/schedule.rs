@@ -1,4 +1,4 @@
-//! `Schedule`.
+//! `Schedule`: the firing times of a ring's sensors.
 
 use std::path::{Path, PathBuf};
 

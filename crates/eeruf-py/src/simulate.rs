@@ -1,4 +1,4 @@
-//! `sim.simulate`.
+//! `sim.simulate`: a whole simulation in one call.
 
 use std::sync::Arc;
 

@@ -550,8 +550,8 @@ impl Plan {
         }
     }
 
-    /// Keeps unmarked columns as a ring only if their names say nothing else: numbers, letters of places. A column that
-    /// changes and is always beyond what modules hear, beside ranges, is removed.
+    /// Keeps unmarked columns as a ring only if their names say nothing else: numbers, letters of places. Beside
+    /// ranges, a column that changes and is always beyond the reach of modules is removed.
     fn one_kind(&mut self) {
         const FARTHEST_M: f64 = 8.0;
         let of: Vec<_> = (0..self.columns.len()).filter(|&index| self.columns[index].role == Role::Range).collect();

@@ -133,7 +133,7 @@ class Counting:
         return rest((0,) * len(kinds), 0)
 
     def rooms(self, n, gap, passed=0):
-        """The |d| that fit into each class of n places."""
+        """Return how many |d| fit into each class of n places."""
         spare, room = self.T - n * gap, lambda low, high: max(0, (high - max(low, self.least)) // self.D + 1)
         return [room(c * gap - spare + (passed if c else 0), min(c * gap + spare, self.T - self.R)) for c in range(n)]
 

@@ -340,7 +340,7 @@ class Run(Result):
     time_s: float
     """Time for which the robot drove, in seconds."""
     way_m: float
-    """The distance it drove, in metres."""
+    """The distance that the robot drove, in metres."""
     top_speed_m_s: float
     """The highest speed, in m/s."""
     nearest_m: float

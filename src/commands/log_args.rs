@@ -10,7 +10,7 @@ use crate::files::error::InputError;
 use crate::files::implausible::warn;
 use crate::report::watch::Watch;
 
-/// Options for reading a log. What is not given is guessed, and `eeruf logs` lists each guess.
+/// Options for reading a log. Those that are not given are guessed, and `eeruf logs` lists each guess.
 #[derive(Clone, clap::Args)]
 #[command(next_help_heading = "The log")]
 pub(crate) struct LogArgs {

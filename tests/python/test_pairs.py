@@ -24,7 +24,7 @@ def table(folder: Path) -> eeruf.Schedule:
 def believed(
     ring: eeruf.Ring, periods: int, wall: bool = True, noise: bool = False, adaptation: eeruf.Adaptation | None = None
 ) -> list[tuple[int, int | None]]:
-    """Return accepted sensors and echo times of a wall, with earlier echoes that never repeat, or of these alone."""
+    """Return the sensor and echo time of each accepted reading. Noise: earlier echoes that never repeat."""
     accepted, fired, ended = [], [0] * ring.sensors, 0
     while ended < periods:
         now_us = ring.next_deadline_us

@@ -1,5 +1,5 @@
 //! `cargo xtask certificates`: designs every ring of the tables and of `rings/`, and has the checker judge their
-//! certificates; then certificates of the tests, many more of each kind than there.
+//! certificates; then runs the tests of certificates, with more problems and without leaving out large ones.
 
 use std::fmt::Write as _;
 use std::path::PathBuf;

@@ -125,7 +125,7 @@ enum Verb {
     Site,
     /// Do everything of a release but uploading, and print what a person must still do (many minutes)
     Release {
-        /// Upload nothing. Only a tag does, through the workflow; this must be said so that nobody expects otherwise
+        /// Upload nothing: only the workflow uploads, for a tag. Required, so that no one expects an upload
         #[arg(long, required = true)]
         dry_run: bool,
     },

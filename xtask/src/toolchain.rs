@@ -118,8 +118,8 @@ pub(crate) fn lab() -> Result<PathBuf> {
     built("eeruf-lab")
 }
 
-/// A binary of the workspace as built for the tests, with the features of all packages, since others would rebuild the
-/// dependencies. A test is built too, so that dependencies have the features that tests need.
+/// A binary of the workspace as built for the tests, with the features of all packages: other features would rebuild
+/// the dependencies. A test is built too, so that dependencies have the features that tests need.
 pub(crate) fn built(name: &str) -> Result<PathBuf> {
     let build = ["build", "--quiet", "--locked", "--workspace", "--test", "line", "--bin", name];
     run(Command::new("cargo").args(build))?;

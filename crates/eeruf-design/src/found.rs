@@ -29,7 +29,7 @@ pub struct FoundJson {
     /// True if the answer came from the atlas, without a search; only from `design`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub from_atlas: Option<bool>,
-    /// Bound of the period by a short certificate, if the period is proven; only from `design`.
+    /// Bound of the period that a short certificate proves, if the period is proven; only from `design`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub certified_us: Option<u32>,
 }

@@ -63,7 +63,7 @@ pub(crate) struct RingFile {
     /// The interval itself, or the distance of walls up to which neighbours hear each other.
     min_interval_us: Option<u32>,
     crosstalk_range_m: Option<f64>,
-    /// The window itself, or the range to see, and the least time between triggers.
+    /// The window itself; or else the range to see, and the least time between triggers.
     pub(crate) window_us: Option<Each<u32>>,
     pub(crate) max_range_m: Option<Each<f64>>,
     pub(crate) retrigger_us: Option<Each<u32>>,

@@ -1,4 +1,4 @@
-//! Rings that move: the period that is proven, against all schedules of tiny rings, each at its own `t_delta`.
+//! Rings that move: compares the proven period with all schedules of tiny rings, each at its own `t_delta`.
 
 #[path = "../../eeruf-period/tests/common/mod.rs"]
 mod common;

@@ -19,7 +19,7 @@ pub struct FlowSettings {
     pub window: Micros,
     /// The time for which sensors are deaf after firing.
     pub blanking: Micros,
-    /// R: how long sound is heard, its tail included.
+    /// R: the time for which sound is heard, including its tail.
     pub audible: Micros,
     /// Settings of the judge.
     pub belief: BeliefSettings,

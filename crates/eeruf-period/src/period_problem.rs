@@ -81,9 +81,9 @@ impl ShortestPeriod {
 pub struct ToSpare {
     /// Possible growth of every `t_delta`.
     pub t_delta: Micros,
-    /// Possible growth of every time between two firings, for intervals and shared lines, after that.
+    /// Possible growth of every interval, and time between firings on a shared line, once every `t_delta` has grown.
     pub interval: Micros,
-    /// Possible growth of every refire time, after that.
+    /// Possible growth of every refire time, once both of these have grown.
     pub refire: Micros,
     /// True if no schedule of this period has more to spare.
     pub proven: [bool; 3],

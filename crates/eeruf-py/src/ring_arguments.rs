@@ -15,7 +15,7 @@ use crate::{
     requirements::{self, Asked, each},
 };
 
-/// Limits of sound, as given in Python.
+/// P and R, the limits of paths of sound, as given in Python.
 pub(crate) struct Sound<'a, 'py> {
     pub(crate) path_change_us: Option<&'a Bound<'py, PyAny>>,
     pub(crate) audible_us: Option<&'a Bound<'py, PyAny>>,

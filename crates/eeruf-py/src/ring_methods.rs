@@ -620,7 +620,7 @@ impl Ring {
         of_sensor!(self, sensor, |ring| ring.enable(sensor))
     }
 
-    /// Returns true if a sensor fires.
+    /// Returns true if a sensor is enabled.
     ///
     /// Args:
     ///     sensor: its index, from 0.

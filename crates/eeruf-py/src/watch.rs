@@ -59,7 +59,7 @@ pub(crate) fn until_stopped<'py>(
     result
 }
 
-/// A watcher's answer in the form for a search.
+/// Converts a watcher's answer, true to go on, for a search.
 pub(crate) fn control_flow(go_on: bool) -> ControlFlow<()> {
     if go_on { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
 }

@@ -61,8 +61,8 @@ const COUNTED: &str = "  if (!sonar.read()) return;
   if (Serial.availableForWrite() < 14) return;
 ";
 
-/// Shares in percent: accepted firings, of all and of the worst module; wrong ones among the accepted, with walls and
-/// in the alcove; and true if the program reports that it is too slow.
+/// Shares of accepted firings, over all modules and for the worst one, and shares of wrong readings among them, with
+/// walls and in the alcove, all in percent; `says_so` is true if the program reports that it is too slow.
 #[derive(Default)]
 struct Figures {
     accepted: f64,

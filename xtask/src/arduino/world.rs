@@ -126,8 +126,8 @@ pub(super) fn before_walls(
     output(&mut command(world, options, elf, seconds, &ways, pins))
 }
 
-/// Runs a sketch for some seconds of its own time. With `causes` the world prints what ended each pulse, but not for a
-/// sketch that sends frames.
+/// Runs a sketch for some seconds of its own time. With `causes` the world prints why each pulse ended; not possible
+/// with a sketch that sends frames.
 pub(super) fn hear(world: &Path, elf: &Path, example: &Example, seconds: u32, causes: bool) -> Result<Heard> {
     let (times, own_mm) = echo_times(example.modules())?;
     let options: &[&str] = if causes { &["--pulses"] } else { &[] };

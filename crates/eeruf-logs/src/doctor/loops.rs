@@ -19,7 +19,7 @@ pub(crate) struct Looped {
 
 /// Number of rounds below which nothing is concluded.
 const FEWEST: usize = 60;
-/// Least share of rounds with a constant sum, and its least ratio to that share for sums over different rounds.
+/// Least share of rounds with a constant sum, and its least ratio to the share found with readings of other rounds.
 const STAYS: f64 = 0.3;
 const BY_CHANCE: f64 = 2.0;
 /// Least movement of the readings meanwhile, in half widths of the tolerance for equal sums.

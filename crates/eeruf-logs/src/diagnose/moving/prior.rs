@@ -45,7 +45,7 @@ pub(super) struct Prior {
     travel_us: i64,
     none: f64,
     readings: f64,
-    /// By time: the counts of rates, and their distribution.
+    /// Counts of the rates at each time; `rates` holds their distribution.
     counts: Vec<[f64; BINS]>,
     rates: Vec<Rates>,
 }

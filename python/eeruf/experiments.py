@@ -94,7 +94,7 @@ class Scenes:
         return (self[index] for index in range(len(self)))
 
     def __eq__(self, other: object) -> bool:
-        """Return true for the same scenes."""
+        """Return true if both have the same scenes."""
         if not isinstance(other, Scenes):
             return NotImplemented
         return (self.kind, self.numbers, self.physics) == (other.kind, other.numbers, other.physics)

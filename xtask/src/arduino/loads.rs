@@ -43,8 +43,8 @@ pub(super) struct Load {
     /// True if the work masks interrupts; otherwise it may wait for `quietFor()` too.
     pub(super) masks: bool,
     waits: bool,
-    /// Least number of right readings a second of six polled modules in the alcove, for a table with edges stamped as
-    /// seen.
+    /// Least number of right readings a second in the alcove, from six polled modules that fire by a table, with edges
+    /// stamped when they are seen.
     least: f64,
     /// Largest number of wrong readings a second: polled, and by interrupt.
     most: [f64; 2],

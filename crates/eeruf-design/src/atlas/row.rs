@@ -8,7 +8,7 @@ use eeruf_files::AnySchedule;
 
 use super::rings::Ring;
 
-/// A ring's entry. Times are in ticks.
+/// The atlas's entry for a ring. Times are in ticks.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Row {
     /// The ring.

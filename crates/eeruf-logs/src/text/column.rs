@@ -150,7 +150,7 @@ impl Column {
         is_all.then(|| self.distinct.keys().any(is_odd))
     }
 
-    /// Returns true if the column's numbers have units, so that a number without one is cut.
+    /// Returns true if the column's numbers have units, so that a number without one was cut off.
     pub(super) fn needs_unit(&self) -> bool {
         self.units * 10 >= self.numbers.len() * 8 && self.units > 0
     }

@@ -13,8 +13,8 @@ pub(crate) struct Counts {
     /// Free-running logs with at least 5 % wrong readings: all, those called none seen, and those with a suspect or a
     /// fooled sensor.
     pub(crate) free: [usize; 3],
-    /// Pairs that fool in 60 % of the rounds of a blocking loop: all, those named with the test, and those named
-    /// falsely.
+    /// Pairs that fool in at least 60 % of the rounds of a blocking loop: all, and those named; then
+    /// the named pairs of sensors that take no part in crosstalk.
     pub(crate) pairs: [usize; 3],
     /// Healthy logs: all, those blamed, and those with a suspect though nothing chatters.
     pub(crate) healthy: [usize; 3],

@@ -218,7 +218,7 @@ class PlacingRun(Result):
     others_of_accepted: float | None
     """Share of the accepted readings that are another robot's sound; None if none was accepted."""
     others_at_worst: float | None
-    """The largest such share of a single sensor, among sensors with five or more accepted readings."""
+    """The largest share of another robot's sound for one sensor, among those with five or more accepted readings."""
     foreign_of_accepted: float | None
     """Share of the accepted readings that are foreign sound."""
     good_lost: float | None
@@ -567,7 +567,7 @@ class SetThreeFigures(Result):
     others_of_accepted: Spread | None
     """Share of the accepted readings that are another robot's sound."""
     others_at_worst: Spread | None
-    """The largest such share of a single sensor, among sensors with five or more accepted readings."""
+    """The largest share of another robot's sound for one sensor, among those with five or more accepted readings."""
     foreign_of_accepted: Spread | None
     """Share of the accepted readings that are foreign sound, also of the robot's other sensors or an earlier firing."""
     good_lost: Spread | None

@@ -25,7 +25,7 @@ use crate::steps::{Steps, command, empty, run};
 /// Folder in which the library is packed, built and run.
 const TARGET: &str = "target/arduino";
 
-/// Wiring of an example: a trigger and an echo for each module; and true if it runs in the short test.
+/// Wiring of an example: a trigger and an echo pin for each module. `short` is true if it runs in the short test.
 struct Example {
     name: &'static str,
     triggers: &'static [u8],

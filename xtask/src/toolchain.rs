@@ -98,8 +98,8 @@ pub(crate) fn target_folder(cargo: &Command) -> &'static str {
     if is_debian(cargo) { "target/debian" } else { "target" }
 }
 
-/// The size limit in bytes of a build product. Limits are for the compilers that CI installs, which sets this variable;
-/// with others a twentieth more is allowed.
+/// The size limit in bytes of a build product. Limits are for the compilers that CI installs; CI sets
+/// `EERUF_EXACT_SIZES`. Without that variable a twentieth more is allowed.
 pub(crate) fn most_bytes(limit: u64) -> u64 {
     most(limit, env::var_os("EERUF_EXACT_SIZES").is_some())
 }

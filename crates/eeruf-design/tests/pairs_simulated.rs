@@ -64,7 +64,7 @@ fn accepted(readings: &Readings) -> f64 {
     (0..readings.len()).filter(|&k| readings.is_accepted(k)).count() as f64 / readings.len() as f64
 }
 
-/// Checks that noise slows the ring down to the last rung of its ladder, and that no less is right.
+/// Checks that noise slows the ring down to the last rung of its ladder, and that the readings pass [`are_right`].
 fn slows_down(spec: &RingSpec, noisy: &Readings, calm: &Readings, period: Micros, of: usize) {
     let period = f64::from(period.as_micros());
     let (slow, fast) = (last_period(noisy) / period, last_period(calm) / period);

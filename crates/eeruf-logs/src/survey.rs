@@ -3,7 +3,7 @@
 //! In each slot of a survey at most two sensors fire, and all earlier sound has died away: see
 //! [`SurveyPlan`](https://docs.rs/eeruf-core/latest/eeruf_core/struct.SurveyPlan.html). So an edge is the sensor's own
 //! echo, which does not move, or the other's sound, which comes earlier by as much as the other fired earlier, or a
-//! stray. For each receiver the times from a firing to its edges are laid over each other; a time at which edges of
+//! stray. For each receiver the times from a firing to its edges are overlaid; a time at which edges of
 //! different slots meet is a path if their number is improbable as strays (a binomial test, times the number of places
 //! at which a path was looked for). The best supported path is taken first, and its edges are removed.
 //!

@@ -160,7 +160,7 @@ impl Adaptation {
     ///     sound_m_s: the speed of sound, in m/s, 100 to 1000.
     ///
     /// Raises:
-    ///     EerufError: out of range.
+    ///     EerufError: an argument is out of range.
     ///
     /// Example:
     ///     >>> import eeruf

@@ -81,7 +81,7 @@ pub(crate) struct Simulation {
 /// The calls so far, in order.
 #[derive(Default)]
 struct History {
-    /// Shared with copies.
+    /// Calls before the last copy was made; copies share them.
     before: Vec<Arc<Vec<Done>>>,
     since: Vec<Done>,
 }

@@ -115,7 +115,7 @@ fn most_helped(before: &Readings, after: &Readings) -> (usize, u8) {
     most.map_or((0, 0), |(id, _)| (usize::from(id.robot), id.sensor))
 }
 
-/// Returns true for another's sound that is believed.
+/// Returns true if the reading is foreign sound that was accepted and is wrong.
 fn is_fooled(of: &Readings, reading: usize) -> bool {
     let is_foreign = matches!(of.cause[reading], Cause::Crosstalk | Cause::Stale | Cause::External);
     of.is_accepted(reading) && is_foreign && of.is_wrong(reading, TOLERANCE_US)

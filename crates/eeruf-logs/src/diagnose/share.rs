@@ -3,7 +3,7 @@
 /// A share of a number of trials, with its 95 % interval.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Share {
-    /// Trials that count.
+    /// Number of trials in the share.
     pub count: u32,
     /// Number of trials.
     pub of: u32,

@@ -10,7 +10,7 @@ use crate::firings::FiringLog;
 /// One reading of the receiver.
 #[derive(Clone, Copy)]
 pub(super) struct Heard {
-    /// The place in the log.
+    /// The place of its firing in the log.
     pub(super) firing: usize,
     pub(super) fired_us: i64,
     pub(super) phase: u8,

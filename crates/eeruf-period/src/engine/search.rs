@@ -142,8 +142,8 @@ impl Search {
         Decided::Open
     }
 
-    /// Looks for firing times by repairing these, at the cost of at most `budget` nodes: not at all if ticks are so
-    /// fine that a move costs more.
+    /// Looks for firing times by repairing given ones, at the cost of at most `budget` nodes: not at all if ticks are
+    /// so fine that a move costs more.
     pub(crate) fn repair(&mut self, repair: &mut Repair, budget: u64, go_on: &mut dyn FnMut(u64) -> bool) -> Decided {
         let end = self.nodes.saturating_add(budget);
         let (period, pairs) = (repair.period as u32, (repair.period as u64).pow(2));

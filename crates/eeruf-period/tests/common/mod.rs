@@ -115,7 +115,7 @@ impl Random {
         self.below(most + 1)
     }
 
-    /// True once in `n` times.
+    /// Returns true once in `n` calls, at random.
     pub(crate) fn once_in(&mut self, n: u32) -> bool {
         self.below(n) == 0
     }

@@ -192,7 +192,7 @@ fn untimed(thing_needs: &str) -> String {
     format!("a reading without a time; expected --time COLUMN for a table, as {thing_needs} times")
 }
 
-/// Writes the reading, and if it is accepted, the accepted one.
+/// Writes the reading, and if it is accepted, writes it again on the topic of accepted readings.
 fn write(
     out: &mut McapWriter,
     sensor: &Sensor,

@@ -105,7 +105,7 @@ impl<'a> Sink<'a> {
         }
     }
 
-    /// The form of the log.
+    /// Notes the form of the log.
     pub(crate) fn form(&mut self, form: &str) {
         form.clone_into(&mut self.report.form);
     }

@@ -114,7 +114,7 @@ pub(crate) struct AnyRing {
     pub(crate) now: Instant,
 }
 
-/// Calls the ring, whichever kind it is.
+/// Calls the ring, whatever its kind.
 macro_rules! each {
     ($fires:expr, |$ring:ident| $call:expr) => {
         match $fires {

@@ -46,14 +46,14 @@ pub(crate) fn run_all(plan: &Plan, steps: &mut Steps) {
     let tests = |test: &str| {
         let mut cargo = Command::new("cargo");
         cargo.args(["test", "--release", "--locked", "-p", "eeruf-period", "-p", "eeruf-design", "--all-features"]);
-        cargo.args(["--test", test, "--", "--nocapture"]).env("EERUF_NODES", u32::MAX.to_string());
+        cargo.args(["--test", "all", test, "--", "--nocapture"]).env("EERUF_NODES", u32::MAX.to_string());
         cargo
     };
     steps.step(&format!("{} tiny problems against nested loops", plan.tiny), || {
-        run(tests("checker").arg("accepted_claims").env("EERUF_CASES", plan.tiny.to_string()))
+        run(tests("checker::accepted_claims").env("EERUF_CASES", plan.tiny.to_string()))
     });
-    for test in ["brute_force", "twins", "table", "uneven"] {
-        steps.step(&format!("all certificates of the test {test}"), || run(&mut tests(test)));
+    for test in ["brute_force::", "twins::", "table::", "uneven::"] {
+        steps.step(&format!("all certificates of {test}"), || run(&mut tests(test)));
     }
     println!("\n{rows}");
 }

@@ -9,7 +9,6 @@ mod contract;
 mod corpus;
 mod edges;
 mod fired;
-// Also a separate binary, where the features are tested alone; here for mutation tests.
 mod flow;
 #[cfg(feature = "serde")]
 #[path = "../formats.rs"]

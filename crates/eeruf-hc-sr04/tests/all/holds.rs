@@ -1,12 +1,10 @@
 //! Lines that stay high: a stuck line is never free space, and a measurement counts once, however long a module without
 //! an echo holds its line.
 
-#[path = "shared/pins.rs"]
-mod pins;
-
 use std::cell::RefCell;
 use std::rc::Rc;
 
+use crate::pins::{self, Pin};
 use eeruf_core::flow::{BeliefSettings, FlowRing, TurnSettings};
 use eeruf_core::{
     Edge, Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, judge::Judge, plan::Plan, tables::PAPER_12,
@@ -15,7 +13,6 @@ use eeruf_core::{
 use eeruf_hc_sr04::{HcSr04Ring, Pins, Settings};
 use embedded_hal_mock::eh1::delay::NoopDelay;
 use fastrand::Rng;
-use pins::Pin;
 
 const K: usize = 12;
 /// The sensor whose line is watched; all others have walls.

@@ -1,8 +1,6 @@
 //! The checker of certificates against nested loops over firing times: whatever claim it accepts is true.
 
-mod common;
-
-use common::{Random, accepted, checker, claim_of, feasible, from_environment, random_problem, verdicts_of};
+use crate::common::{Random, accepted, checker, claim_of, feasible, from_environment, random_problem, verdicts_of};
 use eeruf_period::engine::Claim;
 use eeruf_period::engine::prove::{prove, prove_in_time};
 use std::collections::BTreeSet;

@@ -1,9 +1,6 @@
 //! Claims about finer ticks, checked by searches in ticks of a tenth.
 
-#[path = "../../eeruf-period/tests/common/mod.rs"]
-mod common;
-
-use common::Random;
+use crate::common::Random;
 use eeruf_core::Micros;
 use eeruf_design::{Effort, RingDesign, RingSpec};
 

@@ -1,19 +1,16 @@
 //! A module that holds its line after a lost echo until it is pulled low, as some clones do.
 
-#[path = "shared/pins.rs"]
-mod pins;
-
 use std::cell::RefCell;
 use std::convert::Infallible;
 use std::rc::Rc;
 
+use crate::pins::{self, Pin};
 use eeruf_core::{
     Edge, Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, ScheduledRing, tables::PAPER_12,
     watch::SensorState, watch::SensorWatch,
 };
 use eeruf_hc_sr04::{FlexPin, HcSr04Ring, Health, Pins, Settings};
 use embedded_hal_mock::eh1::delay::NoopDelay;
-use pins::Pin;
 
 const K: usize = 12;
 const LATCHED: u8 = 3;

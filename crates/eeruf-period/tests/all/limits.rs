@@ -1,12 +1,9 @@
 //! Limits of the search: budgets, a control that stops it, one and sixty-four sensors, ticks that are too coarse or too
 //! fine, bad input.
 
-#[path = "common/alike.rs"]
-mod alike;
-
 use std::ops::ControlFlow;
 
-use alike::{Alike, Layout as Rows, assert_serves, conflicts, paper_12};
+use crate::alike::{Alike, Layout as Rows, assert_serves, conflicts, paper_12};
 use eeruf_core::search::{Progress, SearchError};
 use eeruf_core::{Criterion, Layout, Micros, Requirements};
 use eeruf_period::PeriodProblem;

@@ -1,8 +1,6 @@
 //! Certificates of the proven periods of tests/data/shortest-periods.json, which the checker accepts.
 
-mod common;
-
-use common::{accepted, claim_of, nodes_of, small};
+use crate::common::{self, accepted, claim_of, nodes_of, small};
 use eeruf_period::engine::prove::{NoProof, prove, prove_what_can_be, prove_while};
 use eeruf_period::engine::shortest::shortest;
 use eeruf_period::engine::{Claim, Problem};

@@ -8,17 +8,11 @@
 //! `EERUF_BRUTE_FORCE=10000` judges this many problems instead of 200 in each test, and `EERUF_BRUTE_FORCE_SEED` draws
 //! others.
 
-#[path = "common/alike.rs"]
-mod alike;
-mod common;
-#[path = "larger/solver.rs"]
-mod solver;
-
-use alike::Alike;
-use common::Random;
+use crate::alike::Alike;
+use crate::common::Random;
+use crate::solver::{MOST_TICKS, Needs, brute_force};
 use eeruf_period::engine::search::{Decided, FiringTimes, Search};
 use eeruf_period::engine::spare::most_to_spare;
-use solver::{MOST_TICKS, Needs, brute_force};
 
 /// A budget that suffices for all questions here, and ends a broken search too.
 const BUDGET: u64 = 1_000_000;

@@ -1,14 +1,10 @@
 //! Steps of the search to its answers, the same on each machine: recorded in `tests/data/period-effort.txt`. A change
 //! of the search shows there what it costs or saves. `EERUF_WRITE=1` rewrites the file.
 
-#[path = "common/alike.rs"]
-mod alike;
-mod common;
-
 use std::fmt::Write as _;
 
-use alike::{Alike, Layout, conflicts, conflicts_where};
-use common::{Random, random_problem};
+use crate::alike::{Alike, Layout, conflicts, conflicts_where};
+use crate::common::{Random, random_problem};
 use eeruf_period::engine::Problem;
 use eeruf_period::engine::search::FiringTimes;
 use eeruf_period::engine::shortest::shortest;

@@ -1,8 +1,6 @@
 //! Rings that differ from an even one in a single need, and random ones: found, proven and certified.
 
-mod common;
-
-use common::{Random, accepted, claim_of, from_environment, small, table};
+use crate::common::{Random, accepted, claim_of, from_environment, small, table};
 use eeruf_period::engine::prove::prove;
 use eeruf_period::engine::shortest::shortest;
 use eeruf_period::engine::{Claim, Problem};

@@ -1,9 +1,6 @@
 //! Ring files of sensors that differ: their requirements, their errors and their answers.
 
-#[path = "../../eeruf-period/tests/common/mod.rs"]
-mod common;
-
-use common::{accepted, small};
+use crate::common::{accepted, small};
 use eeruf_core::Micros;
 use eeruf_design::certificate::Stated;
 use eeruf_design::{Effort, RingDesign, RingSpec};
@@ -20,9 +17,9 @@ fn design(spec: &RingSpec) -> RingDesign {
 /// Three realistic rings of `rings/`.
 fn rings() -> [(&'static str, &'static str); 3] {
     [
-        ("car-12", include_str!("../../../rings/car-12.toml")),
-        ("hc-sr04-8-two-multiplexers", include_str!("../../../rings/hc-sr04-8-two-multiplexers.toml")),
-        ("mower-8-and-4", include_str!("../../../rings/mower-8-and-4.toml")),
+        ("car-12", include_str!("../../../../rings/car-12.toml")),
+        ("hc-sr04-8-two-multiplexers", include_str!("../../../../rings/hc-sr04-8-two-multiplexers.toml")),
+        ("mower-8-and-4", include_str!("../../../../rings/mower-8-and-4.toml")),
     ]
 }
 

@@ -1,9 +1,6 @@
 //! Rings on peripherals that trigger and capture: a PIO simulated cycle by cycle, an RMT receiver, and the capture
 //! registers of a timer. The loop is late, and results are late, lost or duplicated.
 
-#[path = "shared/pio.rs"]
-mod pio;
-
 use fastrand::Rng;
 use std::collections::VecDeque;
 
@@ -15,7 +12,7 @@ use eeruf_core::{
 use eeruf_hc_sr04::capture::{CaptureRing, Captured, Captures, LineEdge, PioLine, RmtLine, TimerLine};
 use eeruf_hc_sr04::{Health, Settings, SetupError};
 
-use pio::StateMachine;
+use crate::pio::StateMachine;
 
 const K: usize = 12;
 const BEGIN: Instant = Instant::from_micros(u32::MAX - 700_000);

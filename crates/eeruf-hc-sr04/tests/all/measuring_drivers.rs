@@ -1,13 +1,11 @@
 //! Drivers of modules that measure by themselves, one call at a time; and their ring, with scripted modules.
 
-#[path = "shared/four.rs"]
-mod four;
-
 use fastrand::Rng;
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
 
+use crate::four::{BEGIN, K, ring};
 use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, ScheduledRing, SensorError, SpeedOfSound};
 use eeruf_hc_sr04::measuring::{Fault, Mb1010, Measured, Measures, MeasuringRing, Srf08, Us100};
 use eeruf_hc_sr04::modules::{Module, SRF08, US_100};
@@ -17,7 +15,6 @@ use embedded_hal_mock::eh1::MockError;
 use embedded_hal_mock::eh1::delay::NoopDelay;
 use embedded_hal_mock::eh1::digital::{Mock as Pin, State, Transaction as Level};
 use embedded_hal_mock::eh1::i2c::{Mock as Bus, Transaction};
-use four::{BEGIN, K, ring};
 
 const fn ms(ms: u32) -> Micros {
     Micros::from_millis(ms)

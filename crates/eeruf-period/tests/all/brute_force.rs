@@ -1,9 +1,7 @@
 //! A test of all rules: for tiny random problems, the proven shortest period equals the one found by trying all
 //! schedules. A rule that refutes too much would prove a longer one.
 
-mod common;
-
-use common::{Random, accepted, claim_of, feasible, from_environment, nodes_of, random_problem};
+use crate::common::{Random, accepted, claim_of, feasible, from_environment, nodes_of, random_problem};
 use eeruf_period::engine::prove::{NoProof, prove};
 use eeruf_period::engine::shortest::{self, Shortest};
 use eeruf_period::engine::spare::most_to_spare;

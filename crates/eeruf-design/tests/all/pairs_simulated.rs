@@ -6,8 +6,8 @@ use eeruf_core::Micros;
 use eeruf_design::{Effort, RingSpec};
 use eeruf_sim::{Air, Cause, Method, Noise, Options, Pose, Readings, Robot, Scene, Transducer, Wall, World, simulate};
 
-const CAR: &str = include_str!("../../../rings/car-12.toml");
-const PAPER: &str = include_str!("../../../rings/paper-12.toml");
+const CAR: &str = include_str!("../../../../rings/car-12.toml");
+const PAPER: &str = include_str!("../../../../rings/paper-12.toml");
 
 fn spec(text: &str) -> RingSpec {
     RingSpec::from_text(text).unwrap_or_else(|error| panic!("{error}"))

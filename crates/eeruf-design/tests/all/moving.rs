@@ -1,9 +1,6 @@
 //! Rings that move: compares the proven period with all schedules of tiny rings, each at its own `t_delta`.
 
-#[path = "../../eeruf-period/tests/common/mod.rs"]
-mod common;
-
-use common::Random;
+use crate::common::Random;
 use eeruf_core::Micros;
 use eeruf_design::{Effort, NoDesign, RingDesign, RingSpec};
 

@@ -1,19 +1,15 @@
 //! The share of readings that healthy modules lose, in rooms where they hear each other and in the open.
 
-mod shared {
-    pub(crate) mod pins;
-}
-
 use std::cell::RefCell;
 use std::rc::Rc;
 
+use crate::pins::{Lines, Pin};
 use eeruf_core::flow::{BeliefSettings, FlowRing, TurnSettings};
 use eeruf_core::{
     Edge, Instant, Micros, ReadingKind, Ring, RingConfig, RingEvent, judge::Judge, plan::Plan, tables::PAPER_12,
 };
 use eeruf_hc_sr04::{HcSr04Ring, Pins, Settings};
 use embedded_hal_mock::eh1::delay::NoopDelay;
-use shared::pins::{Lines, Pin};
 
 const K: usize = 12;
 const WINDOW: Micros = Micros::from_millis(36);

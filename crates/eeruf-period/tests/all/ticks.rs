@@ -1,9 +1,6 @@
 //! Cost of a problem in nodes: larger neighbourhoods, and the same problem in finer ticks.
 
-#[path = "common/alike.rs"]
-mod alike;
-
-use alike::{Alike, Layout, assert_serves, conflicts, paper_12};
+use crate::alike::{Alike, Layout, assert_serves, conflicts, paper_12};
 
 /// A budget that suffices for all questions here, and ends a broken search too.
 const BUDGET: u64 = 1_000_000;

@@ -1,20 +1,17 @@
 //! Rings of four modules that measure by themselves, in simulated time: SRF08 on I2C, US-100 on a serial line, MB1010
 //! by pulse width. Each fake follows its data sheet and can have faults.
 
-#[path = "shared/four.rs"]
-mod four;
-
 use fastrand::Rng;
 use std::cell::RefCell;
 use std::collections::VecDeque;
 use std::rc::Rc;
 
+use crate::four::{BEGIN, K, ring};
 use eeruf_core::{Instant, Micros, Reading, ReadingKind, RingEvent};
 use eeruf_hc_sr04::Health;
 use eeruf_hc_sr04::measuring::{Mb1010, Measures, MeasuringRing, Srf08, Us100};
 use embedded_hal::i2c::{ErrorKind, NoAcknowledgeSource, Operation};
 use embedded_hal_mock::eh1::delay::NoopDelay;
-use four::{BEGIN, K, ring};
 
 /// The space in front of a module.
 #[derive(Clone, Copy, Debug, PartialEq)]

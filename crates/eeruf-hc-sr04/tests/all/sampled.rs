@@ -1,18 +1,15 @@
 //! A loop that samples its lines and has other work: edges are known to lie between two looks, and wrong distances from
 //! late looks are not accepted.
 
-#[path = "shared/pins.rs"]
-mod pins;
-
 use std::cell::RefCell;
 use std::rc::Rc;
 
+use crate::pins::{self, Lines as _, Pin};
 use eeruf_core::flow::{BeliefSettings, FlowRing, TurnSettings};
 use eeruf_core::{Edge, Instant, Micros, ReadingKind, RingConfig, RingError, RingEvent};
 use eeruf_hc_sr04::{HcSr04Ring, Pins, Sampler, Settings};
 use embedded_hal_mock::eh1::delay::NoopDelay;
 use fastrand::Rng;
-use pins::{Lines as _, Pin};
 
 const K: usize = 8;
 

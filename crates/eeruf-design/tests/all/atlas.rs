@@ -1,10 +1,6 @@
 //! The atlas of this crate.
-#![cfg(feature = "make-atlas")]
 
-#[path = "../../eeruf-period/tests/common/mod.rs"]
-mod common;
-
-use common::{Random, accepted, claim_of, from_environment, small};
+use crate::common::{Random, accepted, claim_of, from_environment, small};
 use eeruf_core::Micros;
 use eeruf_design::atlas::{ATLAS, Neighbourhood, Ring, Row, all_rings, answer, rows};
 use eeruf_design::atlas_making::{certificate_of, hash_of, header};

@@ -152,10 +152,10 @@ fn equal_under_sanitizers() -> Result<()> {
 pub(crate) fn micropython() -> Result<()> {
     need("node --version", "apt install nodejs")?;
     fs::create_dir_all("target")?;
-    // Cargo runs tests in the folder of their package.
+    // Cargo runs tests in the folder of their package. All of them are built, as they are for `cargo test`.
     let corpus = absolute("target/corpus.txt")?;
     run(Command::new("cargo")
-        .args(["test", "--quiet", "--locked", "--package", "eeruf-core", "--test", "all", "corpus_matches_golden"])
+        .args(["test", "--quiet", "--locked", "--workspace", "--test", "all", "corpus_matches_golden"])
         .env("EERUF_CORPUS", &corpus))?;
     let python = |test: &str| {
         let mut python = Command::new("python3");

@@ -10,8 +10,11 @@ use crate::steps::{Beside, Steps, need, run, run_component, run_line};
 use crate::toolchain::{cargo_of_version, program, version_of};
 use crate::{changed, printed};
 
-/// Steps that mostly take one thread: emulators, and C.
-const BESIDE: [&[&str]; 4] = [&["firmware"], &["arduino", "--short"], &["c"], &["micropython"]];
+/// Commands that run beside the steps, in two lanes: emulators and C; and what waits for networks and clocks.
+const BESIDE: [&[&[&str]]; 2] = [
+    &[&["firmware"], &["arduino", "--short"], &["c"], &["micropython"]],
+    &[&["python"], &["ros2"], &["page", "--test"]],
+];
 
 /// The first steps of both lanes.
 fn sources(steps: &mut Steps) {
@@ -36,12 +39,11 @@ pub(crate) fn run_quick() -> ExitCode {
 }
 
 pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
-    let mut steps = Steps::default();
+    let (mut steps, beside) = (Steps::default(), BESIDE.map(Beside::begin));
     sources(&mut steps);
     let Some(metadata) = steps.step("cargo metadata", || Ok(MetadataCommand::new().no_deps().exec()?)) else {
         return steps.finish(nothing_skipped);
     };
-    let beside = Beside::begin(&BESIDE);
     steps.step("each feature of the core alone", || each_feature_alone(&metadata));
     // Clippy has just built everything with the default compiler.
     let default = version_of("rustc").unwrap_or_default();
@@ -70,21 +72,17 @@ pub(crate) fn run_all(nothing_skipped: bool) -> ExitCode {
              --features defmt,embassy-time,fugit,serde,async -- interop serde format next_reads",
         )
     });
-    steps.step("Python package", crate::python::python);
     steps.step("bags of ROS 1", || {
         let (python, packages) = ("/usr/bin/python3", "apt install python3-rosbag python3-sensor-msgs");
         need(&format!("{python} -c __import__('sensor_msgs'),__import__('rosbag')"), packages)?;
         run(Command::new(python).arg("crates/eeruf-logs/tests/ros1_bags.py").arg(program()?))
     });
-    steps.step("page in a browser", || crate::page::page(crate::page::Tests::Short));
-    steps.step("ROS 2 node", crate::ros2::ros2);
-    steps.step("ROS 2 package", crate::ros2::package);
     steps.step("documentation", || {
         run(Command::new("cargo")
             .args(["doc", "--workspace", "--no-deps", "--locked"])
             .env("RUSTDOCFLAGS", "--deny warnings"))
     });
-    steps.join(beside);
+    beside.into_iter().for_each(|lane| steps.join(lane));
     steps.finish(nothing_skipped)
 }
 

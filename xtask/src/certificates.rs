@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use anyhow::{Result, ensure};
 use fs_err as fs;
 
-use crate::steps::{Steps, output, run, run_line, stem};
+use crate::steps::{Steps, command, output, run, run_line, stem};
 
 /// Parts to check.
 #[derive(clap::Args)]
@@ -44,15 +44,15 @@ pub(crate) fn run_all(plan: &Plan, steps: &mut Steps) {
         rows += &steps.step(name, || certify(name, &rings)).unwrap_or_default();
     }
     let tests = |test: &str| {
-        let mut cargo = Command::new("cargo");
-        cargo.args(["test", "--release", "--locked", "-p", "eeruf-period", "-p", "eeruf-design", "--all-features"]);
-        cargo.args(["--test", "all", test, "--", "--nocapture"]).env("EERUF_NODES", u32::MAX.to_string());
+        let mut cargo = command("cargo test --release --locked -p eeruf-period -p eeruf-design --all-features");
+        cargo.args(["--test", "all", test, "--", "--nocapture"]);
+        cargo.env("EERUF_NODES", u32::MAX.to_string()).env("EERUF_PROOFS", "3");
         cargo
     };
     steps.step(&format!("{} tiny problems against nested loops", plan.tiny), || {
         run(tests("checker::accepted_claims").env("EERUF_CASES", plan.tiny.to_string()))
     });
-    for test in ["brute_force::", "twins::", "table::", "uneven::"] {
+    for test in ["brute_force::", "checker::broken", "twins::", "table::", "uneven::"] {
         steps.step(&format!("all certificates of {test}"), || run(&mut tests(test)));
     }
     println!("\n{rows}");

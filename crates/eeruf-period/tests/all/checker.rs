@@ -221,11 +221,11 @@ fn rules_prove_true_claims_and_no_false_ones() {
 // Each rule broken in turn proves something false, which the whole checker refuses.
 #[test]
 fn broken_rules_prove_false_claims() {
-    let all_false = claims(400, 1);
+    let (all_false, most) = (claims(400, 1), from_environment("EERUF_PROOFS", 1) as usize);
     let all = BROKEN.iter().map(|rule| (rule, "orders")).chain(BROKEN_IN_TIME.iter().map(|rule| (rule, "time")));
     for (number, ((rule, from, to), how)) in all.enumerate() {
         let broken = broken(number, from, to);
-        let proofs = proven_by(&broken, &format!("broken-{number}"), &all_false, 3, how);
+        let proofs = proven_by(&broken, &format!("broken-{number}"), &all_false, most, how);
         assert!(!proofs.is_empty(), "{rule}: no false claim is proven");
         let [by_broken, by_whole] = [&broken, &checker()].map(|checker| verdicts_of(checker, "broken-proofs", &proofs));
         assert!(by_broken.iter().all(|verdict| !verdict.starts_with("refused")), "{rule}: {by_broken:?}");

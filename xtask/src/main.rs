@@ -150,13 +150,7 @@ fn main() -> ExitCode {
         }
         Verb::Deb(plan) => one(&mut steps, "Debian package", || deb::deb(&plan)),
         Verb::Logs => logs::logs(&mut steps),
-        Verb::Page { test, long } => one(&mut steps, "the page", || {
-            page::page(match (test, long) {
-                (_, true) => page::Tests::Long,
-                (true, false) => page::Tests::Short,
-                (false, false) => page::Tests::No,
-            })
-        }),
+        Verb::Page { test, long } => one(&mut steps, "the page", || page::page(test, long)),
         Verb::Reprint { check, document } => one(&mut steps, "what the programs print", || match document {
             Some(document) if check => printed::check(&[document], printed::Which::All),
             Some(document) => printed::reprint(&document),

@@ -33,21 +33,10 @@ const INSTALLED: &str = "node_modules/.installed.json";
 /// The module that differs between the folder and the one file, and its replacement there.
 const PLATFORM: [&str; 2] = ["platform.js", "platform-single.js"];
 
-/// Tests of the page to run.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Tests {
-    /// None, only build.
-    No,
-    /// The tests that `cargo xtask test` runs.
-    Short,
-    /// All tests.
-    Long,
-}
-
-/// Builds the page and tests it.
-pub(crate) fn page(tests: Tests) -> Result<()> {
+/// Builds the page and, if asked to, runs the tests that `cargo xtask test` runs, or all of them.
+pub(crate) fn page(short: bool, long: bool) -> Result<()> {
     install()?;
-    if tests == Tests::No {
+    if !short && !long {
         return build();
     }
     // Linking the engine takes one core; the other needs of the tests are prepared meanwhile.
@@ -56,7 +45,7 @@ pub(crate) fn page(tests: Tests) -> Result<()> {
         build()?;
         prepared.join().map_err(|_| anyhow!("what the tests need cannot be made"))?
     })?;
-    test(tests == Tests::Long)
+    test(long)
 }
 
 /// Writes the folder and the one file.

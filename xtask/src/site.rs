@@ -36,7 +36,7 @@ pub(crate) fn site(steps: &mut Steps) {
     });
     steps.step("reference for Python", || crate::python::reference(&Path::new(SITE).join("python")));
     steps.step("the page", || {
-        crate::page::page(crate::page::Tests::No)?;
+        crate::page::page(false, false)?;
         copy_folder("target/page/folder/.", &Path::new(SITE).join("page"))
     });
     steps.step("links of the site", links_lead_somewhere);

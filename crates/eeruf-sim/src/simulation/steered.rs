@@ -91,7 +91,7 @@ impl Leg {
 
 impl Kinematics for Steered {
     fn moves(&self) -> bool {
-        self.world.moves()
+        self.world.moves() || self.legs.iter().any(|of| !of.legs.is_empty())
     }
 
     fn moment(&self, robot: usize, now: u64) -> Moment {

@@ -185,3 +185,14 @@ fn question_about_many_poles_stops_when_asked() {
     // Without the stop the query takes many seconds.
     assert!(ended - stopped < Duration::from_secs(5), "{:?} after {:?}", ended - stopped, stopped - began);
 }
+
+// A flow ring takes the changes of its own motion for crosstalk unless it hears how the robot moves.
+#[test]
+fn flow_ring_of_a_steered_robot_accepts_echoes_while_driving() {
+    let world = Arc::new(room_with(vec![], vec![robot_at(-1.0)]));
+    let mut simulation = Simulation::new(world, Method::Flow, &Options::default(), Stop::default()).unwrap();
+    simulation.set_velocity(0, 0.3, 0.1).unwrap();
+    let readings = simulation.step(3.0, |_| true).unwrap();
+    let echoes = (0..readings.len()).filter(|&k| readings.is_accepted(k) && readings.t_echo_us[k].is_finite());
+    assert!(2 * echoes.count() > readings.len());
+}

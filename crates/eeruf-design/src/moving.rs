@@ -19,6 +19,7 @@ use eeruf_period::{PeriodProblem, ToSpare};
 use crate::find::{NoDesign, RingDesign};
 use crate::ring::RingSpec;
 use crate::shortest::{Effort, FoundPeriod, SPARE_BUDGET, shortest};
+use crate::uneven::OwnedUneven;
 
 /// A `t_delta` so large that not even a second of silence between two firings would suffice.
 const TOO_MUCH: Micros = Micros::from_millis(1000);
@@ -67,7 +68,7 @@ impl RingSpec {
             Some(uneven) => {
                 let requirements = self.problem().requirements;
                 let refire = (0..self.sensors).map(|x| requirements.refire_of(x).max(least)).collect();
-                Self { uneven: Some(uneven.with_refire(refire)), ..self.clone() }
+                Self { uneven: Some(OwnedUneven { refire, ..uneven.clone() }), ..self.clone() }
             }
             None => Self { window: self.window.max(least), ..self.clone() },
         }

@@ -164,7 +164,7 @@ impl RingSpec {
     #[must_use]
     pub fn covering(&self, t_delta: Micros) -> Self {
         let more = t_delta.saturating_sub(self.t_delta);
-        let uneven = self.uneven.as_ref().map(|uneven| uneven.covering(more));
+        let uneven = self.uneven.as_ref().map(|uneven| uneven.with_t_deltas(|t_delta| t_delta.saturating_add(more)));
         let path_change = self.path_change.map(|change| change.saturating_add(more));
         Self { t_delta, uneven, path_change, ..self.clone() }
     }

@@ -11,9 +11,9 @@ pub struct OwnedUneven {
     pub window: Vec<Micros>,
     /// Least time between two triggers of each sensor.
     pub refire: Vec<Micros>,
-    intervals: Vec<(u8, u8, Micros)>,
-    shared_lines: Vec<u64>,
-    together: Vec<u64>,
+    pub(crate) intervals: Vec<(u8, u8, Micros)>,
+    pub(crate) shared_lines: Vec<u64>,
+    pub(crate) together: Vec<u64>,
 }
 
 impl OwnedUneven {
@@ -59,17 +59,6 @@ impl OwnedUneven {
         Uneven { t_delta, window, refire, intervals, shared_lines, together }
     }
 
-    /// Returns the needs with every `t_delta` increased by this much.
-    pub(crate) fn covering(&self, more: Micros) -> Self {
-        let t_delta = self.t_delta.iter().map(|t_delta| t_delta.saturating_add(more)).collect();
-        Self { t_delta, ..self.clone() }
-    }
-
-    /// Returns the needs with other refire times.
-    pub(crate) fn with_refire(&self, refire: Vec<Micros>) -> Self {
-        Self { refire, ..self.clone() }
-    }
-
     /// Returns the needs with other intervals of pairs.
     pub(crate) fn with_intervals(&self, other: impl Fn(Micros) -> Micros) -> Self {
         let intervals = self.intervals.iter().map(|&(x, y, interval)| (x, y, other(interval))).collect();
@@ -86,12 +75,7 @@ impl OwnedUneven {
         Self { window: self.window.iter().map(|window| other(*window)).collect(), ..self.clone() }
     }
 
-    /// Returns the needs without shared lines, if there are any.
-    pub(crate) fn with_lines_of_their_own(&self) -> Option<Self> {
-        (!self.shared_lines.is_empty()).then(|| Self { shared_lines: Vec::new(), ..self.clone() })
-    }
-
-    /// Checks that no two sensors that fire together must keep a time between their firings.
+    /// Returns true if no two sensors that fire together must keep a time between their firings.
     ///
     /// # Errors
     /// Two sensors that must.

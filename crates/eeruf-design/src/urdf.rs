@@ -5,7 +5,7 @@ use std::path::Path;
 
 use eeruf_files::{FileError, Pose, meant};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
-use urdf_rs::{Joint, JointType, Robot};
+use roxmltree::{Document, Node};
 
 use crate::limits::number;
 use crate::places::Places;
@@ -20,31 +20,36 @@ const STEEPEST_DEG: f64 = 15.0;
 /// Largest number of links that an error lists.
 const NAMED: usize = 20;
 
-/// A robot, and the file that describes it.
+/// Links and joints of a robot, and the file that describes it.
 struct Urdf<'a> {
-    robot: Robot,
+    links: Vec<String>,
+    joints: Vec<Joint>,
     file: &'a Path,
+}
+
+/// A joint, with the place of its child's frame in its parent's.
+struct Joint {
+    name: String,
+    kind: String,
+    parent: String,
+    child: String,
+    origin: Isometry3<f64>,
 }
 
 /// Reads the places of these links.
 pub(crate) fn places(file: &Path, links: &[String]) -> Result<Places, String> {
-    let urdf = Urdf { robot: read(file)?, file };
+    let urdf = Urdf::read(file)?;
     let name = file.display();
     let base = urdf.base()?;
-    let mut places = Places {
-        base_link: Some(base.to_owned()),
-        urdf_links: urdf.robot.links.iter().map(|link| link.name.clone()).collect(),
-        ..Places::default()
-    };
-    let floor = urdf.has(FLOOR).then(|| urdf.place(base, FLOOR).ok()).flatten();
-    match floor {
-        Some(floor) => places.base_height_m = -floor.translation.z,
-        None => places.assumed.push(format!(
+    let mut places = Places { base_link: Some(base.to_owned()), urdf_links: urdf.links.clone(), ..Places::default() };
+    match urdf.place(base, FLOOR) {
+        Ok(floor) => places.base_height_m = -floor.translation.z,
+        Err(_) => places.assumed.push(format!(
             "{base} on the floor, as {name} has no {FLOOR} fixed to it and the ring file no base_height_m"
         )),
     }
     for link in links {
-        if !urdf.has(link) {
+        if !urdf.links.contains(link) {
             return Err(urdf.unknown(link));
         }
         let place = urdf.place(base, link)?;
@@ -66,34 +71,63 @@ pub(crate) fn places(file: &Path, links: &[String]) -> Result<Places, String> {
     Ok(places)
 }
 
-fn read(file: &Path) -> Result<Robot, String> {
-    let text = std::fs::read_to_string(file).map_err(|error| format!("urdf: {}", FileError::reading(file, &error)))?;
-    let name = file.display();
-    if text.contains("<xacro:") || text.contains("${") {
-        return Err(format!(
-            "urdf: {name} is a xacro file; expected a URDF: run xacro first, `xacro {name}` prints one"
-        ));
+impl Joint {
+    fn of(joint: Node<'_, '_>) -> Result<Self, String> {
+        let link = |tag| attribute(within(joint, tag).unwrap_or(joint), "link");
+        let numbers = |key| {
+            let said = within(joint, "origin").and_then(|origin| origin.attribute(key)).unwrap_or("0 0 0");
+            let each: Vec<f64> = said.split_whitespace().map_while(|number| number.parse().ok()).collect();
+            <[f64; 3]>::try_from(each).map_err(|_| format!("{key} = \"{said}\"; expected three numbers"))
+        };
+        let [roll, pitch, yaw] = numbers("rpy")?;
+        let turned = UnitQuaternion::from_euler_angles(roll, pitch, yaw);
+        let origin = Isometry3::from_parts(Translation3::from(numbers("xyz")?), turned);
+        let (name, kind) = (attribute(joint, "name")?, attribute(joint, "type")?);
+        Ok(Self { name, kind, parent: link("parent")?, child: link("child")?, origin })
     }
-    urdf_rs::read_from_string(&text).map_err(|error| format!("urdf: {name}: {error}; expected a URDF"))
 }
 
-impl Urdf<'_> {
-    fn has(&self, link: &str) -> bool {
-        self.robot.links.iter().any(|known| known.name == link)
+fn within<'a, 'i>(node: Node<'a, 'i>, tag: &str) -> Option<Node<'a, 'i>> {
+    node.children().find(|child| child.has_tag_name(tag))
+}
+
+fn attribute(node: Node<'_, '_>, key: &str) -> Result<String, String> {
+    node.attribute(key).map(str::to_owned).ok_or_else(|| format!("<{}> without {key}", node.tag_name().name()))
+}
+
+impl<'a> Urdf<'a> {
+    fn read(file: &'a Path) -> Result<Self, String> {
+        let text = std::fs::read_to_string(file);
+        let text = text.map_err(|error| format!("urdf: {}", FileError::reading(file, &error)))?;
+        let name = file.display();
+        if text.contains("<xacro:") || text.contains("${") {
+            return Err(format!(
+                "urdf: {name} is a xacro file; expected a URDF: run xacro first, `xacro {name}` prints one"
+            ));
+        }
+        Self::of(file, &text).map_err(|error| format!("urdf: {name}: {error}; expected a URDF"))
+    }
+
+    fn of(file: &'a Path, text: &str) -> Result<Self, String> {
+        let document = Document::parse(text).map_err(|error| error.to_string())?;
+        let robot = within(document.root(), "robot").ok_or("no <robot>")?;
+        let each = |tag| robot.children().filter(move |node| node.has_tag_name(tag));
+        let links = each("link").map(|link| attribute(link, "name")).collect::<Result<_, _>>()?;
+        Ok(Self { links, joints: each("joint").map(Joint::of).collect::<Result<_, _>>()?, file })
     }
 
     /// The link relative to which places are given: `base_link`, or else the root.
     fn base(&self) -> Result<&str, String> {
-        if self.has(BASE) {
+        if self.links.iter().any(|known| known == BASE) {
             return Ok(BASE);
         }
-        let is_root = |name: &str| self.robot.joints.iter().all(|joint| joint.child.link != name);
-        let root = self.robot.links.iter().map(|link| &*link.name).find(|name| is_root(name));
+        let is_root = |name: &str| self.joints.iter().all(|joint| joint.child != name);
+        let root = self.links.iter().map(String::as_str).find(|name| is_root(name));
         root.ok_or_else(|| format!("urdf: {}: no {BASE} and no root; expected one of them", self.file.display()))
     }
 
     fn unknown(&self, link: &str) -> String {
-        let links = || self.robot.links.iter().map(|link| &*link.name);
+        let links = || self.links.iter().map(String::as_str);
         let names: Vec<_> = links().take(NAMED).map(|name| format!("`{name}`")).collect();
         let more = links().count().saturating_sub(NAMED);
         let more = if more > 0 { format!(" and {more} more") } else { String::new() };
@@ -102,15 +136,15 @@ impl Urdf<'_> {
     }
 
     /// The joints from a link up to the top of the robot.
-    fn joints_above<'a>(&'a self, link: &'a str) -> (Vec<&'a Joint>, &'a str) {
+    fn joints_above<'l>(&'l self, link: &'l str) -> (Vec<&'l Joint>, &'l str) {
         let (mut joints, mut at) = (vec![], link);
-        while let Some(joint) = self.robot.joints.iter().find(|joint| joint.child.link == at) {
-            // The robot's joints form a loop.
-            if joints.len() == self.robot.joints.len() {
+        while let Some(joint) = self.joints.iter().find(|joint| joint.child == at) {
+            // A robot that closes a circle.
+            if joints.len() == self.joints.len() {
                 break;
             }
             joints.push(joint);
-            at = &joint.parent.link;
+            at = &joint.parent;
         }
         (joints, at)
     }
@@ -129,23 +163,16 @@ impl Urdf<'_> {
             up.pop();
             down.pop();
         }
-        if let Some(joint) = down.iter().chain(&up).find(|joint| joint.joint_type != JointType::Fixed) {
-            let kind = format!("{:?}", joint.joint_type).to_lowercase();
+        if let Some(joint) = down.iter().chain(&up).find(|joint| joint.kind != "fixed") {
             return Err(format!(
-                "links: `{link}` in {name} moves against `{from}`: joint `{}` is {kind}; expected fixed joints",
-                joint.name
+                "links: `{link}` in {name} moves against `{from}`: joint `{}` is {}; expected fixed joints",
+                joint.name, joint.kind
             ));
         }
-        let along = |joints: &[&Joint]| {
-            joints.iter().rev().fold(Isometry3::identity(), |place, joint| place * transform(joint))
-        };
+        let along =
+            |joints: &[&Joint]| joints.iter().rev().fold(Isometry3::identity(), |place, joint| place * joint.origin);
         Ok(along(&up).inverse() * along(&down))
     }
-}
-
-fn transform(joint: &Joint) -> Isometry3<f64> {
-    let ([x, y, z], [roll, pitch, yaw]) = (joint.origin.xyz.0, joint.origin.rpy.0);
-    Isometry3::from_parts(Translation3::new(x, y, z), UnitQuaternion::from_euler_angles(roll, pitch, yaw))
 }
 
 #[cfg(feature = "rooms")]
@@ -342,7 +369,8 @@ mod tests {
         let circle = r#"<robot name="c"><link name="base_link"/><link name="a"/><link name="b"/>
             <joint name="1" type="fixed"><parent link="a"/><child link="b"/></joint>
             <joint name="2" type="fixed"><parent link="b"/><child link="a"/></joint></robot>"#;
-        let urdf = Urdf { robot: urdf_rs::read_from_string(circle).unwrap(), file: &PathBuf::new() };
+        let file = PathBuf::new();
+        let urdf = Urdf::of(&file, circle).unwrap();
         assert!(urdf.place(BASE, "a").unwrap_err().contains("not joined"));
     }
 }

@@ -5,6 +5,7 @@ use eeruf_core::{Layout, Micros, Requirements};
 use eeruf_period::PeriodProblem;
 
 use crate::ring::RingSpec;
+use crate::uneven::OwnedUneven;
 
 /// Budget of nodes for the search with one relaxed need.
 const WHAT_IF_BUDGET: u64 = 20_000;
@@ -70,10 +71,10 @@ impl RingSpec {
             let separation = Micros::new(t_delta.as_micros().saturating_mul(2).saturating_add(1));
             Micros::new(less(separation).as_micros().saturating_sub(1) / 2)
         };
-        let mut closer = uneven.clone();
-        closer.t_delta = uneven.t_delta.iter().map(|t_delta| nearer(*t_delta)).collect();
+        let closer = uneven.with_t_deltas(nearer);
         add("every t_delta a tenth less", Self { t_delta: nearer(self.t_delta), uneven: Some(closer), ..self.clone() });
-        if let Some(uneven) = uneven.with_lines_of_their_own() {
+        if !uneven.shared_lines.is_empty() {
+            let uneven = OwnedUneven { shared_lines: vec![], ..uneven.clone() };
             add("an echo line for each sensor", Self { uneven: Some(uneven), ..self.clone() });
         }
         cases

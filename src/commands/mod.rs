@@ -21,6 +21,7 @@ mod experiment;
 mod licenses;
 mod log_args;
 mod logs;
+#[cfg(feature = "man")]
 mod man;
 mod merge;
 mod methods;
@@ -147,6 +148,7 @@ pub(crate) enum Verb {
     Examples(examples::Args),
     #[command(after_help = help!("completions bash > eeruf.bash", "0 printed; 2 bad input"))]
     Completions(completions::Args),
+    #[cfg(feature = "man")]
     #[command(after_help = help!("man ~/.local/share/man/man1", "0 written; 2 bad input"))]
     Man(man::Args),
     #[command(after_help = help!("licenses", "0 printed"))]
@@ -211,6 +213,7 @@ impl Verb {
             Self::Verify(args) => verify::run(args),
             Self::Examples(args) => examples::run(args),
             Self::Completions(args) => completions::run(args),
+            #[cfg(feature = "man")]
             Self::Man(args) => man::run(args),
             Self::Licenses(args) => licenses::run(args),
             Self::Replay(args) => replay::run(args),

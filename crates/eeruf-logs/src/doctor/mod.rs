@@ -15,16 +15,12 @@ use mirror::mirrored;
 use series::{Scatter, Series};
 
 use crate::symptom::Finding;
-use statistics::Dependence;
+use statistics::{FEWEST, LEAST_SHARE};
 
 /// Largest number of readings that are kept.
 const MOST_READINGS: usize = 1 << 18;
-/// Number of a sensor's readings below which nothing is concluded.
-const FEWEST: u32 = 30;
-/// Significance limit in standard deviations: chance exceeds it in 3 of 100,000 sensors.
-const DEVIATIONS: f64 = 4.0;
-/// Least share of affected readings for a verdict, besides significance.
-const LEAST_SHARE: f64 = 0.05;
+/// Number of sensors above which a log is not of a ring.
+const MOST_SENSORS: usize = 64;
 
 /// The verdict of a log on crosstalk.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -177,6 +173,9 @@ impl Doctor {
         };
         let scatter: Vec<Scatter> = self.sensors.iter().map(Series::scatter).collect();
         let cleared = self.silent_rounds(&scatter, &name, &mut found);
+        self.senders(&scatter, &name, &mut found);
+        found.fooled.sort_unstable();
+        found.fooled.dedup();
         self.suspects(&scatter, &cleared, &name, &mut found);
         if found.verdict == LogVerdict::NoneSeen
             && let Some(suspect) = found.suspects.first()
@@ -211,8 +210,6 @@ impl Doctor {
         name: &impl Fn(usize) -> &'n str,
         found: &mut Examination,
     ) -> Vec<bool> {
-        /// Number of sensors above which a log is not of a ring.
-        const MOST_SENSORS: usize = 64;
         /// Number of comparisons in which a share of `LEAST_SHARE` would show.
         const MANY: u32 = 400;
         let sensors = self.sensors.len();
@@ -247,7 +244,7 @@ impl Doctor {
                     continue;
                 }
                 let seen = self.sensors[receiver].changes(classes, scatter[receiver]).dependence();
-                let is_fooled = seen.count >= FEWEST && seen.deviations >= DEVIATIONS && seen.share >= LEAST_SHARE;
+                let is_fooled = seen.is_foreign();
                 cleared[receiver] &= seen.count >= MANY && !is_fooled;
                 if is_fooled {
                     found.verdict = LogVerdict::Crosstalk;
@@ -266,9 +263,38 @@ impl Doctor {
                 }
             }
         }
-        found.fooled.sort_unstable();
-        found.fooled.dedup();
         cleared
+    }
+
+    /// Finds readings that move against the lag to another sensor by as much, as only its sound does.
+    fn senders<'n>(&self, scatter: &[Scatter], name: &impl Fn(usize) -> &'n str, found: &mut Examination) {
+        /// Significance limit in standard deviations, for twice as many comparisons as there are pairs of sensors.
+        const DEVIATIONS: f64 = 5.0;
+        for (receiver, own) in self.sensors.iter().enumerate().take_while(|_| self.sensors.len() <= MOST_SENSORS) {
+            let others = self.sensors.iter().enumerate().filter(|&(other, _)| other != receiver);
+            let follows = others.map(|(other, of)| (other, own.follows(of, scatter[receiver])));
+            let seen: Vec<_> = follows.filter(|(_, seen)| seen.is_foreign() && seen.deviations >= DEVIATIONS).collect();
+            let most = seen.iter().map(|(_, seen)| seen.share).fold(0.0, f64::max);
+            // Those that fire in step with the sender look like it.
+            let alike: Vec<usize> =
+                seen.iter().filter(|(_, of)| of.share > 0.9 * most).map(|&(other, _)| other).collect();
+            let Some(&by) = alike.first() else { continue };
+            let senders = alike.iter().map(|&other| name(other)).collect::<Vec<_>>().join(" or ");
+            found.verdict = LogVerdict::Crosstalk;
+            found.fooled.push(receiver);
+            found.suspects.retain(|of| of.sensor != receiver || of.by == Some(by));
+            found.suspects.push(Suspect {
+                sensor: receiver,
+                by: Some(by),
+                reason: format!(
+                    "{}: {:.0} % of the readings move by as much as the lag to {senders}, and against it: the sound of \
+                     {senders}; an own echo does not",
+                    name(receiver),
+                    100.0 * most
+                ),
+                test: pause(name(receiver), name(by)),
+            });
+        }
     }
 
     /// Finds readings explained by a loop or by others' sound but not by objects at rest or in motion.
@@ -358,17 +384,17 @@ impl Doctor {
             if scatter.same_us(scatter) > step_us {
                 blurred = blurred.max(scatter.us);
             }
-            let Dependence { share, deviations, count } = own.changes(&classes, scatter).dependence();
-            if count < FEWEST {
+            let seen = own.changes(&classes, scatter).dependence();
+            if seen.count < FEWEST {
                 few += 1;
-            } else if deviations >= DEVIATIONS && share >= LEAST_SHARE {
+            } else if seen.is_foreign() {
                 found.fooled.push(sensor);
                 found.reasons.push(format!(
                     "{}: {:.0} % of the readings depend on which of two lags others fire with; an own echo does not",
                     name(sensor),
-                    100.0 * share
+                    100.0 * seen.share
                 ));
-            } else if share >= LEAST_SHARE + 1.0 / f64::from(count).sqrt() {
+            } else if seen.share >= LEAST_SHARE + 1.0 / f64::from(seen.count).sqrt() {
                 unclear += 1;
             }
         }

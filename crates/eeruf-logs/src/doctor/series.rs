@@ -1,6 +1,6 @@
 //! The readings of one sensor, in order of time.
 
-use super::statistics::Changes;
+use super::statistics::{Changes, Dependence};
 use crate::diagnose::median;
 
 /// Difference to the next echo, in microseconds, up to which echoes belong to one steady value.
@@ -149,16 +149,54 @@ impl Series {
         Odd { isolated, jumps, loose, stands: crowds.iter().copied().fold(0.0, f64::max), echoes: echoes.len() }
     }
 
-    /// For each firing, the time since the latest firing of another sensor, in microseconds; NaN before the first.
-    pub(crate) fn lags(&self, other: &Self) -> Vec<f64> {
+    /// For each firing, the number of firings of another sensor up to then.
+    fn firings_before<'a>(&'a self, other: &'a Self) -> impl Iterator<Item = usize> + 'a {
         let mut next = 0;
-        let lag = |&at: &f64| {
+        self.at_us.iter().map(move |&at| {
             while other.at_us.get(next).is_some_and(|&fired| fired <= at + 1.0) {
                 next += 1;
             }
-            next.checked_sub(1).map_or(f64::NAN, |latest| at - other.at_us[latest])
+            next
+        })
+    }
+
+    /// For each firing, the time since the latest firing of another sensor, in microseconds; NaN before the first.
+    pub(crate) fn lags(&self, other: &Self) -> Vec<f64> {
+        let lag = |(next, &at): (usize, &f64)| next.checked_sub(1).map_or(f64::NAN, |latest| at - other.at_us[latest]);
+        self.firings_before(other).zip(&self.at_us).map(lag).collect()
+    }
+
+    /// Pairs of consecutive readings between which the lag to another sensor's latest or next firing changes while that
+    /// sensor's own echo does not, as it does in a loop that waits for it. Sound of the other moves against the lag by
+    /// as much; an own echo, at rest or in motion, moves equally often with it.
+    pub(crate) fn follows(&self, other: &Self, scatter: Scatter) -> Dependence {
+        /// Least and largest change of a lag, in microseconds.
+        const CHANGES_US: std::ops::Range<f64> = 300.0..30_000.0;
+        let same_us = scatter.same_us(scatter);
+        let before: Vec<usize> = self.firings_before(other).collect();
+        let of = |next: bool| {
+            let (mut against, mut with, mut pairs) = (0, 0, 0);
+            for k in (1..before.len()).step_by(2) {
+                let [Some(one), Some(two)] = [k - 1, k].map(|k| (before[k] + usize::from(next)).checked_sub(1)) else {
+                    continue;
+                };
+                let (Some(from), Some(to)) = (other.at_us.get(one), other.at_us.get(two)) else { continue };
+                let lag = (self.at_us[k] - to) - (self.at_us[k - 1] - from);
+                let change = self.echo_us[k] - self.echo_us[k - 1];
+                let is_looped = (other.echo_us[two] - other.echo_us[one]).abs() > 0.25 * lag.abs();
+                if is_looped || change.is_nan() || lag.abs() < 4.0 * same_us || !CHANGES_US.contains(&lag.abs()) {
+                    continue;
+                }
+                pairs += 1;
+                against += u32::from((change + lag).abs() <= same_us);
+                with += u32::from((change - lag).abs() <= same_us);
+            }
+            let excess = f64::from(against) - f64::from(with);
+            let deviations = excess / f64::from((against + with).max(1)).sqrt();
+            Dependence { share: excess / f64::from(pairs.max(1)), deviations, count: pairs }
         };
-        self.at_us.iter().map(lag).collect()
+        let (latest, next) = (of(false), of(true));
+        if next.share > latest.share { next } else { latest }
     }
 
     /// Splits the readings by two lags to another sensor: the class of each reading, and the difference of the lags.

@@ -1,5 +1,12 @@
 //! The tests of the doctor, each with a stated rate of false alarms.
 
+/// Number of a sensor's readings below which nothing is concluded.
+pub(super) const FEWEST: u32 = 30;
+/// Significance limit in standard deviations: chance exceeds it in 3 of 100,000 sensors.
+const DEVIATIONS: f64 = 4.0;
+/// Least share of affected readings for a verdict, besides significance.
+pub(super) const LEAST_SHARE: f64 = 0.05;
+
 /// Dependence of readings on the class of their firing.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Dependence {
@@ -9,6 +16,13 @@ pub(crate) struct Dependence {
     pub(crate) deviations: f64,
     /// Number of comparisons.
     pub(crate) count: u32,
+}
+
+impl Dependence {
+    /// Returns true if neither chance nor a rare event explains it.
+    pub(crate) fn is_foreign(&self) -> bool {
+        self.count >= FEWEST && self.deviations >= DEVIATIONS && self.share >= LEAST_SHARE
+    }
 }
 
 /// Counts of pairs of readings, one of each class: which is greater, by size of the difference.

@@ -215,3 +215,31 @@ fn scatter_that_hides_the_lags_is_said() {
     let blurred = with(12.0);
     assert!(blurred.verdict == LogVerdict::CannotTell && blurred.reasons[0].contains("scatter"), "{blurred:?}");
 }
+
+// Four sensors 28 to 32 ms after one another, by chance. Sound of sensor 2 takes 36 ms to sensor 3, or that of sensor 3
+// comes to sensor 2 in the next round.
+#[test]
+fn sender_is_named_by_the_lag_that_readings_move_against() {
+    let chance = |round: u64, sensor: usize| (noise(round * round, sensor) * 100.0 + 2000.0) as u64;
+    let at = |round: u64, sensor: usize| {
+        130_000 * round + (0..=sensor).map(|before| 28_000 + chance(round, before)).sum::<u64>()
+    };
+    for (sender, fooled, takes_us, driving_us) in
+        [(2, 3, 36_000.0, 0.0), (2, 3, 36_000.0, 40.0), (3, 2, 106_000.0, 0.0), (3, 2, 106_000.0, 40.0)]
+    {
+        let examined = |hears: bool| {
+            examine(4, Pattern::InTurn, |round, sensor| {
+                let own = 9000.0 + 1500.0 * sensor as f64 + driving_us * (round % 40).abs_diff(20) as f64;
+                let sent = at(if sender < fooled { round } else { round.saturating_sub(1) }, sender);
+                let heard = sent as f64 + takes_us - at(round, sensor) as f64;
+                let is_heard = hears && sensor == fooled && (500.0..own).contains(&heard);
+                (at(round, sensor), Some(if is_heard { heard } else { own } + noise(round, sensor)))
+            })
+        };
+        let (found, healthy) = (examined(true), examined(false));
+        assert_eq!((found.verdict, &found.fooled[..]), (LogVerdict::Crosstalk, &[fooled][..]), "{found:?}");
+        assert_eq!(found.suspects.iter().map(|of| of.by).collect::<Vec<_>>(), [Some(sender)], "{found:?}");
+        assert!(found.reasons.iter().any(|of| of.contains(&format!("the sound of s{sender};"))), "{found:?}");
+        assert_eq!((healthy.verdict, healthy.suspects), (LogVerdict::NoneSeen, vec![]), "{:?}", healthy.reasons);
+    }
+}

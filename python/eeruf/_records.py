@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from eeruf._summary import Result
+from eeruf._summary import Result, document
 
 if TYPE_CHECKING:
     from typing import Literal
@@ -203,3 +203,6 @@ class Steering(Result):
     trapped: bool = False
     """True if the direction leads away from the target, by more than 90 degrees: the robot is in a dead end, or soon will
     be."""
+
+
+document({**globals()})

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING, ClassVar, Literal
 
-from eeruf._summary import Result, Summary, Table
+from eeruf._summary import Result, Summary, Table, document
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -664,3 +664,6 @@ class SetThree(Table):
     """The runs of each method, in the order of the placings."""
     height: Literal["flat", "room"] = "flat"
     """``"room"`` if the rings heard floor and ceiling."""
+
+
+document({**globals()})

@@ -9,6 +9,37 @@ if TYPE_CHECKING:
     from eeruf._eeruf import _MethodName
 
 
+class _Documented:
+    """A docstring with those of the fields, which only the source has: ``help`` shows them."""
+
+    def __init__(self, text: str | None) -> None:
+        self.text = text
+
+    def __get__(self, _: object, kind: type) -> str:
+        import ast
+        import inspect
+
+        (tree,) = ast.parse(inspect.getsource(kind)).body
+        body = getattr(tree, "body", [])
+        fields = [
+            f"    {ast.unparse(one.target)}: {' '.join(str(of.value.value).split())}"
+            for one, of in zip(body, body[1:])
+            if isinstance(one, ast.AnnAssign) and isinstance(of, ast.Expr) and isinstance(of.value, ast.Constant)
+        ]
+        return (
+            "\n".join([inspect.cleandoc(self.text or ""), "", "Attributes:", *fields, ""])
+            if fields
+            else self.text or ""
+        )
+
+
+def document(names: dict[str, object]) -> None:
+    """Let ``help`` of the results among these show what their fields are."""
+    for kind in names.values():
+        if isinstance(kind, type) and issubclass(kind, Result) and kind.__module__ == names["__name__"]:
+            kind.__doc__ = _Documented(kind.__doc__)  # type: ignore[assignment]
+
+
 def _plain(value: object) -> object:
     """Convert to numbers, strings, lists and dicts."""
     if (to_dict := getattr(value, "to_dict", None)) is not None:
@@ -58,7 +89,9 @@ class Table(Result):
         rows = [
             [name, *(_said(getattr(of, key), title) for key, title in self._titles.items())] for name, of in methods
         ]
-        return [["method", *self._titles.values()], *rows]
+        columns = zip(self._titles.values(), list(zip(*rows))[1:])
+        titles = [title + (" (95 %)" if any(cell.endswith(")") for cell in cells) else "") for title, cells in columns]
+        return [["method", *titles], *rows]
 
     def __str__(self) -> str:
         """Return the table as text; ``to_dict`` has all figures."""
@@ -134,3 +167,6 @@ class Summary(Result):
     """Number of sensors that were right in fewer than 5 % of their firings."""
     starved_in_part: int
     """Number of starved sensors that read right in one phase and not in another."""
+
+
+document({**globals()})

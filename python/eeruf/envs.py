@@ -1,12 +1,13 @@
 """The courses of Set II as environments of Gymnasium: learn to drive by the readings that a ring accepts.
 
 Needs Gymnasium 1.1 or later (``pip install eeruf[gymnasium]``). Importing this module registers ``eeruf/Course-v0``. The robot
-starts at the near end of a lab with poles and must reach the line 8.2 m ahead within 40 s.
+starts at the near end of a lab with poles, heads for the line 7.2 m ahead, and is to reach it within 40 s.
 
 An observation has, for a ring of K sensors, K ranges in metres (those of the latest accepted readings; 10 m where nothing
 was in range or nothing is known), K ages of these in seconds (at most 10 s), the distance to the finishing line in metres,
-the place across in metres from the lab's middle, and the heading in radians. An action is a speed from 0 to 1 m/s and a rate of turn
-from -1 to 1, in units of 1.5 rad/s. The reward is the progress towards the line in metres, 10 for reaching it, and -10 for a contact.
+the place across in metres from the lab's middle, positive to the left, and the heading in radians, counter-clockwise from straight
+ahead. Sensors count from the right: the eight look 52.5, 37.5, 22.5 and 7.5 degrees to the right, then to the left. An action is a speed from 0 to 1 m/s and a rate of turn
+from -1 to 1, of 1.5 rad/s. The reward is the way gained towards the line in metres, 10 for reaching it, and -10 for a contact.
 ``info["wrong"]`` is the share of sensors whose latest accepted reading is wrong, which only a simulator knows.
 
 Courses below 2,000 are for learning; report on those from 20,000 on.

@@ -637,11 +637,10 @@ class _RobotChanges(TypedDict, total=False):
     coupling_db: float | None
     height_m: float | Iterable[float]
     together: Iterable[Iterable[_Int]]
-    transducer: _Module | Sequence[_Module] | None
     audible_us: _Int | None
     path_change_us: _Int | None
     firing: dict[str, object] | None
-    ring: str | PathLike[str] | None
+    ring: Needs | str | PathLike[str] | None
 
 @final
 class Robot:
@@ -675,11 +674,10 @@ class Robot:
         coupling_db: float | None = None,
         height_m: float | Iterable[float] = 0.3,
         together: Iterable[Iterable[_Int]] = (),
-        transducer: _Module | Sequence[_Module] | None = None,
         audible_us: _Int | None = None,
         path_change_us: _Int | None = None,
         firing: dict[str, object] | None = None,
-        ring: str | PathLike[str] | None = None,
+        ring: Needs | str | PathLike[str] | None = None,
     ) -> Robot: ...
     def replace(self, **changes: Unpack[_RobotChanges]) -> Robot: ...
     @property

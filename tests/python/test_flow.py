@@ -233,14 +233,11 @@ def test_what_is_gone_is_answered_by_name() -> None:
         "HoppingSchedule": lambda: ANY.HoppingSchedule,
         "HoppingSettings": lambda: ANY.HoppingSettings,
         "TrackerSettings": lambda: ANY.TrackerSettings,
-        "Schedule.congruence": lambda: ANY.Schedule.congruence,
-        "Schedule.phases": lambda: ANY.tables.TABLE_I_D.phases,
-        "Ring.hopping": lambda: ANY.Ring.hopping,
     }
     for name, get in gone.items():
         with pytest.raises(AttributeError, match=rf"^eeruf\.{name} is gone; eeruf\.Ring\.flow does it$"):
             get()
-    assert not hasattr(eeruf, "EchoTracker") and not hasattr(eeruf.Schedule, "congruence")
+    assert not hasattr(eeruf, "EchoTracker")
 
 
 def test_each_error_says_what_is_expected() -> None:

@@ -23,14 +23,22 @@ LONG = {
     "all": "tell(); [None for table in waits.all()]",
     "log": "tell(); eeruf.read_log(Endless())",
     "blocks": "tell(); [None for _ in eeruf.logs.blocks(Endless(), judge=eeruf.logs.Agree(500))]",
+    "check": "tell(); eeruf.check(Endless())",
+    "diagnose": "log = firings(200_000); tell(); eeruf.logs.diagnose(log)",
+    "survey": "log = firings(1_000_000); tell(); eeruf.logs.survey(log)",
+    "push_many": "many = numpy.full((30_000_000, 1), 9_000.0); tell(); eeruf.EchoFilter(1, 500).push_many(many)",
 }
 BEFORE = """
-import eeruf, functools, random, time
+import eeruf, functools, numpy, random, time
 class Endless:
     def read(self, size):
         return b"left: 40 cm" + bytes([10])
 def tell(*_):
     print("under way", flush=True)
+def firings(n):
+    k, of = numpy.arange(n), numpy.random.default_rng(1).uniform(2_000, 20_000, n)
+    at = {"fired_us": 10_000 * k + of.astype(int) // 4, "t_echo_us": of}
+    return eeruf.logs.Firings.of(sensor=k % 8, period=k // 8, phase=k // 8 % 2, **at)
 chance = random.Random(3)
 pairs = [(x, y) for x in range(64) for y in range(x) if chance.random() < 0.3]
 scene = eeruf.sim.Scene([[5, 2, -5, 2]], robots=[eeruf.sim.Robot((0, 0, 1.57), 8, 0.26, 0.3)])
@@ -54,7 +62,7 @@ def test_ctrl_c_ends_long_work(name: str) -> None:
     )
     assert child.stdout is not None
     assert child.stdout.readline() == "under way\n"
-    if name in ("count", "all", "step", "log", "blocks"):
+    if name in ("count", "all", "step", "log", "blocks", "check"):
         time.sleep(0.5)
     os.killpg(child.pid, signal.SIGINT)
     try:

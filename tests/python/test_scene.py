@@ -202,8 +202,6 @@ height_m = [0.2, 0.3, 0.4]
     assert robot.replace(module="ping").blanking_us == 115
     assert pickle.loads(pickle.dumps(robot)) == robot
     assert robot == eval(repr(robot), {"Robot": sim.Robot})
-    older = sim.Robot((0, 0, 0), 2, 0.3, 0.1, transducer="hc_sr04")
-    assert older == sim.Robot((0, 0, 0), 2, 0.3, 0.1, module="hc-sr04")
     with pytest.raises(eeruf.EerufError, match="no figure `sees`; expected like, sees_to_m"):
         sim.Robot((0, 0, 0), 2, 0.3, 0.1, {"like": "ping", "sees": 2.0})
 

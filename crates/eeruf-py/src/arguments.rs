@@ -40,7 +40,9 @@ pub(crate) fn whole<T: TryFrom<i128> + TryInto<i128> + Copy>(
 /// Warns about a value that is legal but implausible.
 fn plausible(name: &str, number: f64, py: Python<'_>) -> PyResult<()> {
     let key = name.split_once('[').map_or(name, |(list, _)| list);
-    eeruf_files::doubt(key, number).map_or(Ok(()), |doubt| warn(py, format_args!("{name} = {doubt}")))
+    // Files call a time so; here it is the number of a period.
+    let doubt = if key == "period" { None } else { eeruf_files::doubt(key, number) };
+    doubt.map_or(Ok(()), |doubt| warn(py, format_args!("{name} = {doubt}")))
 }
 
 /// A finite number above zero.

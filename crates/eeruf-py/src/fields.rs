@@ -65,3 +65,36 @@ pub(crate) fn reduce_by_name<'py>(object: &Bound<'py, PyAny>, arguments: Bound<'
     let made = object.py().import("eeruf._rebuild")?.getattr("made")?;
     Ok((made, (object.get_type(), arguments).into_pyobject(object.py())?))
 }
+
+/// The methods of a frozen class around a struct of settings: keyword arguments, all with defaults, each checked
+/// within its range and read back as a property; `repr`, pickling, and further methods.
+macro_rules! settings {
+    ($class:ident($of:ty) $signature:tt {
+        $($(#[$doc:meta])* $field:ident: $type:ty = $checked:ident($range:expr),)*
+    } $($more:tt)*) => {
+        #[pymethods]
+        impl $class {
+            #[new]
+            #[pyo3(signature = (*, $($field=None),*), text_signature = $signature)]
+            #[allow(clippy::too_many_arguments, reason = "keyword arguments")]
+            fn new($($field: Option<&Bound<'_, PyAny>>),*) -> PyResult<Self> {
+                let mut of = <$of>::default();
+                $(of.$field = $checked(stringify!($field), $field, of.$field, $range)?;)*
+                Ok(Self(of))
+            }
+
+            $($(#[$doc])* #[getter] fn $field(&self) -> $type { self.0.$field })*
+
+            fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
+                crate::fields::repr(slf, &[$(stringify!($field)),*])
+            }
+
+            fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<crate::fields::Reduced<'py>> {
+                crate::fields::reduce_by_name(slf, crate::fields::attributes(slf, &[$(stringify!($field)),*])?)
+            }
+
+            $($more)*
+        }
+    };
+}
+pub(crate) use settings;

@@ -27,7 +27,6 @@ mod file_object;
 mod filter;
 mod flow_settings;
 mod found;
-mod gone;
 mod himm;
 mod log_blocks;
 mod logs;

@@ -78,7 +78,7 @@ impl<'py> Asked<'py> {
         Ok(Self(asked))
     }
 
-    fn get(&self, name: &str) -> PyResult<Option<Bound<'py, PyAny>>> {
+    pub(crate) fn get(&self, name: &str) -> PyResult<Option<Bound<'py, PyAny>>> {
         self.0.get_item(name)
     }
 

@@ -9,7 +9,6 @@ use crate::{
     arguments::{flag, instance, micros, number},
     errors::EerufError,
     exclusive::Exclusive,
-    gone::Gone,
     moments::{expected_changes, instant, until},
     requirements::{Asked, UNEVEN},
     ring::{AnyRing, Fires, Promise, Ring, act, ask, of_sensor, table},
@@ -233,11 +232,6 @@ impl Ring {
 
     fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> PyResult<Self> {
         self.__copy__()
-    }
-
-    #[classattr]
-    fn hopping() -> Gone {
-        Gone::new("Ring.hopping", "Ring.flow")
     }
 
     fn __repr__(&self) -> PyResult<String> {

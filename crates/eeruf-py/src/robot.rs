@@ -21,7 +21,7 @@ use crate::{
     module::{modules, shown_module},
     needs::Needs,
     pose::{from_pose, motion, pose_of, to_pose},
-    requirements,
+    requirements::{self, Asked},
     schedule::Schedule,
 };
 
@@ -70,9 +70,8 @@ use crate::{
 ///     velocity_m_s: a constant velocity, (x, y) in the scene's frame, in m/s.
 ///     turn_rad_s: a constant rate of turn, in rad/s.
 ///     waypoints_m: points (x, y) that it drives through in straight lines, instead of a velocity.
-///     speed_m_s: the speed through the waypoints, in m/s.
-///     clock_offset_us: the reading of its clock at the start.
-///     transducer: an older name of ``module``.
+///     speed_m_s: how fast it does so, in m/s.
+///     clock_offset_us: what its clock shows at the start.
 ///     clock_drift_ppm: rate error of its clock, positive if fast, in millionths.
 ///
 /// Raises:
@@ -208,59 +207,34 @@ fn shown_micros<'py>(py: Python<'py>, one: Micros, each: Option<Vec<Micros>>) ->
 /// The arguments of the two kinds of motion.
 const TURNS: [&str; 2] = ["velocity_m_s", "turn_rad_s"];
 const DRIVES: [&str; 2] = ["waypoints_m", "speed_m_s"];
+/// The other keyword arguments.
+#[rustfmt::skip]
+const OPTIONS: [&str; 22] = [
+    "gain", "period_us", "t_delta_us", "window_us", "blanking_us", "min_refire_us", "start_us", "schedule", "neighbours",
+    "consecutive", "odometry", "clock_offset_us", "clock_drift_ppm", "body", "beam", "coupling_db", "height_m",
+    "together", "audible_us", "path_change_us", "firing", "ring",
+];
 
 #[pymethods]
 impl Robot {
     #[new]
-    #[pyo3(signature = (
-        pose, sensors=None, spacing_rad=None, radius_m=None, module=None, *, gain=None, period_us=None, t_delta_us=None,
-        window_us=None, blanking_us=None, min_refire_us=None, start_us=None, schedule=None, neighbours=None,
-        consecutive=None, odometry=None, velocity_m_s=None, turn_rad_s=None, waypoints_m=None,
-        speed_m_s=None, clock_offset_us=None, clock_drift_ppm=None, body=None, beam=None, coupling_db=None,
-        height_m=None, together=None, transducer=None, audible_us=None, path_change_us=None,
-        firing=None, ring=None
-    ))]
+    #[pyo3(signature = (pose, sensors=None, spacing_rad=None, radius_m=None, module=None, **options))]
     #[pyo3(text_signature = "(pose, sensors=None, spacing_rad=None, radius_m=None, module=\"polaroid-6500\", *, \
             gain=\"constant\", period_us=60000, t_delta_us=500, window_us=36000, blanking_us=None, \
             min_refire_us=36000, start_us=0, schedule=None, neighbours=4, consecutive=2, odometry=False, \
             velocity_m_s=None, turn_rad_s=None, waypoints_m=None, speed_m_s=None, clock_offset_us=0, \
-            clock_drift_ppm=0.0, body=None, beam=None, coupling_db=None, height_m=0.3, together=(), transducer=None, \
+            clock_drift_ppm=0.0, body=None, beam=None, coupling_db=None, height_m=0.3, together=(), \
             audible_us=None, path_change_us=None, firing=None, ring=None)")]
-    #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
-    fn new(
-        pose: &Bound<'_, PyAny>,
+    fn new<'py>(
+        pose: &Bound<'py, PyAny>,
         sensors: Option<&Bound<'_, PyAny>>,
         spacing_rad: Option<&Bound<'_, PyAny>>,
         radius_m: Option<&Bound<'_, PyAny>>,
         module: Option<&Bound<'_, PyAny>>,
-        gain: Option<&Bound<'_, PyAny>>,
-        period_us: Option<&Bound<'_, PyAny>>,
-        t_delta_us: Option<&Bound<'_, PyAny>>,
-        window_us: Option<&Bound<'_, PyAny>>,
-        blanking_us: Option<&Bound<'_, PyAny>>,
-        min_refire_us: Option<&Bound<'_, PyAny>>,
-        start_us: Option<&Bound<'_, PyAny>>,
-        schedule: Option<&Bound<'_, PyAny>>,
-        neighbours: Option<&Bound<'_, PyAny>>,
-        consecutive: Option<&Bound<'_, PyAny>>,
-        odometry: Option<&Bound<'_, PyAny>>,
-        velocity_m_s: Option<&Bound<'_, PyAny>>,
-        turn_rad_s: Option<&Bound<'_, PyAny>>,
-        waypoints_m: Option<&Bound<'_, PyAny>>,
-        speed_m_s: Option<&Bound<'_, PyAny>>,
-        clock_offset_us: Option<&Bound<'_, PyAny>>,
-        clock_drift_ppm: Option<&Bound<'_, PyAny>>,
-        body: Option<&Bound<'_, PyAny>>,
-        beam: Option<&Bound<'_, PyAny>>,
-        coupling_db: Option<&Bound<'_, PyAny>>,
-        height_m: Option<&Bound<'_, PyAny>>,
-        together: Option<&Bound<'_, PyAny>>,
-        transducer: Option<&Bound<'_, PyAny>>,
-        audible_us: Option<&Bound<'_, PyAny>>,
-        path_change_us: Option<&Bound<'_, PyAny>>,
-        firing: Option<&Bound<'_, PyAny>>,
-        ring: Option<&Bound<'_, PyAny>>,
+        options: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Self> {
+        let options = Asked::of(pose.py(), "Robot", [], options, &[&OPTIONS, &TURNS, &DRIVES])?;
+        let given = |name: &str| options.get(name);
         let pose = pose_of("pose", pose)?;
         let spacing_rad = spacing_rad
             .map(|angle| in_radians("spacing_rad", number("spacing_rad", angle, -1e3..=1e3)?, TAU))
@@ -272,7 +246,7 @@ impl Robot {
             }
             _ => Ok(()),
         };
-        let file = ring.map(ring_file).transpose()?.map(|spec| spec.robot_ring());
+        let file = given("ring")?.as_ref().map(ring_file).transpose()?.map(|spec| spec.robot_ring());
         let rated_m_s = file.as_ref().map_or(0.0, |file| file.speed_m_s);
         let (mut robot, sensor_poses) = if let (None, Some(file)) = (sensors, &file) {
             no_arc("the ring file says where sensors stand")?;
@@ -311,50 +285,46 @@ impl Robot {
                 .map_err(|message| refused_ring(&message))?;
         }
         let count = robot.sensors.len();
-        let (name, module) = match (module, transducer) {
-            (Some(_), Some(value)) => return Err(wrong("transducer", shown(value), "None, since module is given")),
-            (None, Some(value)) => ("transducer", Some(value)),
-            (value, None) => ("module", value),
-        };
         if let Some(module) = module {
-            robot = robot.with_modules(modules(name, module, count)?);
+            robot = robot.with_modules(modules("module", module, count)?);
             robot.audible = file.as_ref().and_then(|file| file.audible).unwrap_or(robot.audible);
         }
-        let gain = gain.map(|gain| choice("gain", Some(gain), &GainProfile::NAMES)).transpose()?;
-        let beam = beam.map(|beam| choice("beam", Some(beam), &Beam::NAMES)).transpose()?;
+        let gain = given("gain")?.map(|gain| choice("gain", Some(&gain), &GainProfile::NAMES)).transpose()?;
+        let beam = given("beam")?.map(|beam| choice("beam", Some(&beam), &Beam::NAMES)).transpose()?;
         robot = robot.with_pattern(gain, beam);
-        let set = |name, value: Option<&Bound<'_, PyAny>>, field: &mut Micros| {
-            value.map_or(Ok(()), |value| micros(name, value).map(|us| *field = us))
-        };
-        set("period_us", period_us, &mut robot.period)?;
-        let odometry = flag("odometry", odometry, false)?;
-        let given = schedule.map(|schedule| instance::<Schedule>("schedule", schedule, "an eeruf.Schedule"));
-        robot.schedule = given.transpose()?.map(|schedule| schedule.get().0);
-        if t_delta_us.is_none() && !odometry {
+        let set =
+            |name, field: &mut Micros| given(name)?.map_or(Ok(()), |value| micros(name, &value).map(|us| *field = us));
+        set("period_us", &mut robot.period)?;
+        robot.odometry = flag("odometry", given("odometry")?.as_ref(), false)?;
+        if let Some(schedule) = given("schedule")? {
+            robot.schedule = Some(instance::<Schedule>("schedule", &schedule, "an eeruf.Schedule")?.get().0);
+        }
+        if given("t_delta_us")?.is_none() && !robot.odometry {
             cover_motion(&mut robot, rated_m_s);
         }
-        let each = |name, value: Option<&Bound<'_, PyAny>>, of: fn(&SensorLimits) -> Micros, own: Micros| {
+        let each = |name, of: fn(&SensorLimits) -> Micros, own: Micros| {
             let own = || match &robot.limits[..] {
                 [] => vec![own; count],
                 limits => limits.iter().map(of).collect(),
             };
-            value.map_or_else(|| Ok((own(), false)), |value| each_micros(name, value, count))
+            given(name)?.map_or_else(|| Ok((own(), false)), |value| each_micros(name, &value, count))
         };
-        let (t_delta, own_t_delta) = each("t_delta_us", t_delta_us, |limits| limits.t_delta, robot.t_delta)?;
-        let (window, own_window) = each("window_us", window_us, |limits| limits.window, robot.window)?;
+        let (t_delta, own_t_delta) = each("t_delta_us", |limits| limits.t_delta, robot.t_delta)?;
+        let (window, own_window) = each("window_us", |limits| limits.window, robot.window)?;
         let largest = |times: &[Micros]| times.iter().copied().max().unwrap_or_default();
         (robot.t_delta, robot.window) = (largest(&t_delta), largest(&window));
         if own_t_delta || own_window || !robot.limits.is_empty() {
             let limits = t_delta.into_iter().zip(window).map(|(t_delta, window)| SensorLimits { t_delta, window });
             robot.limits = limits.collect();
         }
-        if let Some(blanking_us) = blanking_us {
-            robot = robot.with_blankings(each_micros("blanking_us", blanking_us, count)?.0);
+        if let Some(blanking_us) = given("blanking_us")? {
+            robot = robot.with_blankings(each_micros("blanking_us", &blanking_us, count)?.0);
         }
+        let together = given("together")?;
         if together.is_some() {
             robot.together.clear();
         }
-        for group in together.map_or(Ok(vec![]), |sets| items("together", sets, "sets of two or more sensors"))? {
+        for group in together.map_or(Ok(vec![]), |sets| items("together", &sets, "sets of two or more sensors"))? {
             let members = items("together", &group, "sets of two or more sensors")?;
             let last = u8::try_from(count - 1).unwrap_or(u8::MAX);
             let members = members.iter().map(|sensor| whole("together", sensor, 0..=last));
@@ -364,33 +334,33 @@ impl Robot {
             }
             robot.together.push(members.iter().fold(0, |set, sensor| set | 1 << sensor));
         }
-        set("min_refire_us", min_refire_us, &mut robot.min_refire)?;
-        set("start_us", start_us, &mut robot.start)?;
-        set("audible_us", audible_us, &mut robot.audible)?;
-        if let Some(change) = path_change_us {
-            robot.path_change = Some(micros("path_change_us", change)?);
+        set("min_refire_us", &mut robot.min_refire)?;
+        set("start_us", &mut robot.start)?;
+        set("audible_us", &mut robot.audible)?;
+        if let Some(change) = given("path_change_us")? {
+            robot.path_change = Some(micros("path_change_us", &change)?);
         }
-        robot.firing = firing.map_or(Ok(Sketch::default()), |firing| sketch("firing", firing))?;
-        if neighbours.is_some() || ring.is_none() {
-            robot.neighbours = requirements::neighbours(neighbours)?;
+        robot.firing = given("firing")?.map_or(Ok(Sketch::default()), |firing| sketch("firing", &firing))?;
+        let neighbours = given("neighbours")?;
+        if neighbours.is_some() || file.is_none() {
+            robot.neighbours = requirements::neighbours(neighbours.as_ref())?;
         }
-        robot.consecutive = whole_or("consecutive", consecutive, 2, 2..=8)?;
-        robot.odometry = odometry;
-        robot.motion = motion(velocity_m_s, turn_rad_s, waypoints_m, speed_m_s)?;
+        robot.consecutive = whole_or("consecutive", given("consecutive")?.as_ref(), 2, 2..=8)?;
+        let [turn, drive] = [TURNS, DRIVES].map(|names| names.map(given));
+        let ([velocity_m_s, turn_rad_s], [waypoints_m, speed_m_s]) = (turn, drive);
+        robot.motion =
+            motion(velocity_m_s?.as_ref(), turn_rad_s?.as_ref(), waypoints_m?.as_ref(), speed_m_s?.as_ref())?;
         robot.clock = Clock {
-            offset_us: whole_or("clock_offset_us", clock_offset_us, 0, 0..=u32::MAX)?,
-            drift_ppm: number_or("clock_drift_ppm", clock_drift_ppm, 0.0, -1e3..=1e3)?,
+            offset_us: whole_or("clock_offset_us", given("clock_offset_us")?.as_ref(), 0, 0..=u32::MAX)?,
+            drift_ppm: number_or("clock_drift_ppm", given("clock_drift_ppm")?.as_ref(), 0.0, -1e3..=1e3)?,
         };
-        robot.body = body.map(outline).transpose()?;
-        let mut robot = match height_m {
-            None => robot,
-            Some(given) => {
-                let heights_m = heights(given, robot.sensors.len())?;
-                robot.with_heights(heights_m)
-            }
-        };
-        robot.coupling_db = coupling_db.map(|level| number("coupling_db", level, -200.0..=0.0)).transpose()?;
-        if let (Some(schedule), None) = (robot.schedule, period_us) {
+        robot.body = given("body")?.as_ref().map(outline).transpose()?;
+        if let Some(height_m) = given("height_m")? {
+            robot = robot.with_heights(heights(&height_m, count)?);
+        }
+        let level = given("coupling_db")?;
+        robot.coupling_db = level.map(|level| number("coupling_db", &level, -200.0..=0.0)).transpose()?;
+        if let (Some(schedule), None) = (robot.schedule, given("period_us")?) {
             robot.period = schedule.period();
         }
         Ok(Self { robot, pose, sensor_poses, spacing_rad, radius_m })
@@ -422,7 +392,7 @@ impl Robot {
                 old.into_iter().try_for_each(|name| arguments.del_item(name).or_else(missing))?;
             }
         }
-        if given("module") || given("transducer") {
+        if given("module") {
             arguments.del_item("module")?;
             if !given("blanking_us") {
                 arguments.del_item("blanking_us")?;

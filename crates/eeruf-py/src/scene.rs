@@ -22,6 +22,7 @@ use crate::{
     faults,
     fields::{Reduced, attributes, reduce_by_name},
     paths::{Ends, Paths},
+    requirements::Asked,
     robot::Robot,
     surroundings::{self, Material, Noise},
 };
@@ -132,57 +133,29 @@ fn indices(name: &str, value: Option<&Bound<'_, PyAny>>, walls: usize) -> PyResu
     }
 }
 
-/// The keyword arguments that recreate a scene.
+/// The keyword arguments that make a scene again.
+#[rustfmt::skip]
 const ARGUMENTS: [&str; 16] = [
-    "walls",
-    "open",
-    "two_sided",
-    "poles",
-    "materials",
-    "pole_materials",
-    "temperature_c",
-    "humidity_percent",
-    "pressure_kpa",
-    "robots",
-    "noise",
-    "seed",
-    "max_order",
-    "physics",
-    "height",
-    "faults",
+    "walls", "open", "two_sided", "poles", "materials", "pole_materials", "temperature_c", "humidity_percent",
+    "pressure_kpa", "robots", "noise", "seed", "max_order", "physics", "height", "faults",
 ];
 
 #[pymethods]
 impl Scene {
     #[new]
-    #[pyo3(signature = (
-        walls, open=None, two_sided=None, poles=None, *, materials=None, pole_materials=None, temperature_c=None,
-        humidity_percent=None, pressure_kpa=None, robots=None, noise=None, seed=None, max_order=None, physics=None,
-        height=None, faults=None
-    ))]
+    #[pyo3(signature = (walls, open=None, two_sided=None, poles=None, **options))]
     #[pyo3(text_signature = "(walls, open=None, two_sided=None, poles=None, *, materials=None, pole_materials=None, \
             temperature_c=20.0, humidity_percent=50.0, pressure_kpa=101.325, robots=(), noise=True, seed=1, \
             max_order=6, physics=\"default\", height=\"flat\", faults=())")]
-    #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
-    fn new(
-        py: Python<'_>,
-        walls: &Bound<'_, PyAny>,
+    fn new<'py>(
+        walls: &Bound<'py, PyAny>,
         open: Option<&Bound<'_, PyAny>>,
         two_sided: Option<&Bound<'_, PyAny>>,
         poles: Option<&Bound<'_, PyAny>>,
-        materials: Option<&Bound<'_, PyAny>>,
-        pole_materials: Option<&Bound<'_, PyAny>>,
-        temperature_c: Option<&Bound<'_, PyAny>>,
-        humidity_percent: Option<&Bound<'_, PyAny>>,
-        pressure_kpa: Option<&Bound<'_, PyAny>>,
-        robots: Option<&Bound<'_, PyAny>>,
-        noise: Option<&Bound<'_, PyAny>>,
-        seed: Option<&Bound<'_, PyAny>>,
-        max_order: Option<&Bound<'_, PyAny>>,
-        physics: Option<&Bound<'_, PyAny>>,
-        height: Option<&Bound<'_, PyAny>>,
-        faults: Option<&Bound<'_, PyAny>>,
+        options: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<Self> {
+        let options = Asked::of(walls.py(), "Scene", [], options, &[&ARGUMENTS[4..]])?;
+        let given = |name: &str| options.get(name);
         let rows = matrix("walls", walls, 4)?;
         let mut built_walls: Vec<_> =
             rows.as_array().rows().into_iter().map(|row| Wall::new(row[0], row[1], row[2], row[3])).collect();
@@ -191,7 +164,7 @@ impl Scene {
                 built_walls[index].faces = faces;
             }
         }
-        let surfaces = surroundings::materials("materials", materials, built_walls.len())?;
+        let surfaces = surroundings::materials("materials", given("materials")?.as_ref(), built_walls.len())?;
         for (wall, material) in built_walls.iter_mut().zip(surfaces) {
             wall.material = material;
         }
@@ -200,29 +173,30 @@ impl Scene {
             let rows = matrix("poles", poles, 3)?;
             built_poles.extend(rows.as_array().rows().into_iter().map(|row| Pole::new(row[0], row[1], row[2])));
         }
-        let surfaces = surroundings::materials("pole_materials", pole_materials, built_poles.len())?;
+        let surfaces = surroundings::materials("pole_materials", given("pole_materials")?.as_ref(), built_poles.len())?;
         for (pole, material) in built_poles.iter_mut().zip(surfaces) {
             pole.material = material;
         }
+        let number_of = |name, default, range| number_or(name, given(name)?.as_ref(), default, range);
         let default = Air::default();
         let air = Air {
-            temperature_c: number_or("temperature_c", temperature_c, 20.0, -100.0..=100.0)?,
-            humidity_percent: number_or("humidity_percent", humidity_percent, default.humidity_percent, 0.0..=100.0)?,
-            pressure_kpa: number_or("pressure_kpa", pressure_kpa, default.pressure_kpa, 0.0..=1e4)?,
+            temperature_c: number_of("temperature_c", 20.0, -100.0..=100.0)?,
+            humidity_percent: number_of("humidity_percent", default.humidity_percent, 0.0..=100.0)?,
+            pressure_kpa: number_of("pressure_kpa", default.pressure_kpa, 0.0..=1e4)?,
         };
         let expected = "a sequence of eeruf.sim.Robot";
-        let given = robots.map_or(Ok(vec![]), |robots| arguments::items("robots", robots, expected))?;
+        let each = given("robots")?.map_or(Ok(vec![]), |robots| arguments::items("robots", &robots, expected))?;
         let one =
             |robot: &Bound<'_, PyAny>| instance::<Robot>("robots", robot, expected).map(|robot| robot.get().clone());
-        let robots = given.iter().map(one).collect::<PyResult<Vec<_>>>()?;
-        let noise = surroundings::noise(noise)?;
-        let seed = whole_or("seed", seed, 1, 0..=u64::MAX)?;
-        let max_order = whole_or("max_order", max_order, DEFAULT_ORDER, 0..=u32::MAX)?;
-        let physics = surroundings::physics(physics)?;
-        let room = surroundings::height(height)?;
+        let robots = each.iter().map(one).collect::<PyResult<Vec<_>>>()?;
+        let noise = surroundings::noise(given("noise")?.as_ref())?;
+        let seed = whole_or("seed", given("seed")?.as_ref(), 1, 0..=u64::MAX)?;
+        let max_order = whole_or("max_order", given("max_order")?.as_ref(), DEFAULT_ORDER, 0..=u32::MAX)?;
+        let physics = surroundings::physics(given("physics")?.as_ref())?;
+        let room = surroundings::height(given("height")?.as_ref())?;
         let build = || eeruf_sim::Scene::new(built_walls, built_poles, air).and_then(|scene| scene.with_room(room));
-        let scene = py.detach(build).map_err(Raise::raise)?;
-        let faults = faults::faults(faults)?;
+        let scene = walls.py().detach(build).map_err(Raise::raise)?;
+        let faults = faults::faults(given("faults")?.as_ref())?;
         Self::of(WorldParts { scene, robots: vec![], noise, physics, max_order, seed, faults }, robots)
     }
 
@@ -396,7 +370,7 @@ impl Scene {
     /// The noise, a ``Noise``.
     #[getter]
     fn noise(&self) -> Noise {
-        Noise::of(self.noise)
+        Noise(self.noise)
     }
 
     /// The simulated effects: a preset's name, or a dict.

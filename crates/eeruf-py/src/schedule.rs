@@ -12,7 +12,6 @@ use crate::{
     arguments::{self, micros, shown, times, whole, wrong},
     errors::{EerufError, Raise, warn_of},
     fields::{Reduced, attributes, call, reduce, repr, to_dict},
-    gone::Gone,
     report::report,
     requirements::{ALIKE, Asked, UNEVEN},
 };
@@ -116,17 +115,6 @@ impl Schedule {
         let period = micros("period_us", period_us)?;
         let (a, b) = (times("t_fire_a_us", t_fire_a_us)?, times("t_fire_b_us", t_fire_b_us)?);
         AnySchedule::from_slices(period, &vec![Micros::ZERO; a.len()], [&a, &b]).map(Self).map_err(Raise::raise)
-    }
-
-    /// Time hopping was removed.
-    #[classattr]
-    fn congruence() -> Gone {
-        Gone::new("Schedule.congruence", "Ring.flow")
-    }
-
-    #[classattr]
-    fn phases() -> Gone {
-        Gone::new("Schedule.phases", "Ring.flow")
     }
 
     /// Read a schedule as ``eeruf design --emit toml`` and :meth:`to_toml` write it.

@@ -7,7 +7,7 @@ use pyo3::{
 };
 
 use crate::arguments::{flag, items, number, number_or, shown, wrong};
-use crate::fields::{Reduced, attributes, reduce, reduce_by_name, repr};
+use crate::fields::{Reduced, reduce, repr, settings};
 
 /// The surface of a wall or a pole.
 ///
@@ -111,54 +111,20 @@ pub(crate) fn materials(
 ///     >>> from eeruf import sim
 ///     >>> sim.Scene([[5, 2, -5, 2]], noise=sim.Noise(bursts_per_s=5.0)).noise.bursts_per_s
 ///     5.0
-#[pyclass(frozen, eq, get_all, module = "eeruf.sim")]
+#[pyclass(frozen, eq, module = "eeruf.sim")]
 #[derive(Clone, Copy, PartialEq)]
-pub(crate) struct Noise {
-    /// Fading of each arrival's level, root mean square, in dB.
-    fading_db_rms: f64,
-    /// Jitter of each arrival, root mean square, in microseconds.
-    jitter_us_rms: f64,
-    /// Number of external bursts that are heard per second.
-    bursts_per_s: f64,
-    /// Level of the bursts above the threshold of hearing, in dB.
-    burst_db: f64,
-}
+pub(crate) struct Noise(pub(crate) eeruf_sim::Noise);
 
-impl Noise {
-    pub(crate) fn of(noise: eeruf_sim::Noise) -> Self {
-        let eeruf_sim::Noise { fading_db_rms, jitter_us_rms, bursts_per_s, burst_db } = noise;
-        Self { fading_db_rms, jitter_us_rms, bursts_per_s, burst_db }
-    }
-}
-
-const NOISE: [&str; 4] = ["fading_db_rms", "jitter_us_rms", "bursts_per_s", "burst_db"];
-
-#[pymethods]
-impl Noise {
-    #[new]
-    #[pyo3(signature = (*, fading_db_rms=None, jitter_us_rms=None, bursts_per_s=None, burst_db=None))]
-    #[pyo3(text_signature = "(*, fading_db_rms=1.5, jitter_us_rms=15.0, bursts_per_s=0.0, burst_db=20.0)")]
-    fn new(
-        fading_db_rms: Option<&Bound<'_, PyAny>>,
-        jitter_us_rms: Option<&Bound<'_, PyAny>>,
-        bursts_per_s: Option<&Bound<'_, PyAny>>,
-        burst_db: Option<&Bound<'_, PyAny>>,
-    ) -> PyResult<Self> {
-        let default = Self::of(eeruf_sim::Noise::default());
-        Ok(Self {
-            fading_db_rms: number_or("fading_db_rms", fading_db_rms, default.fading_db_rms, 0.0..=20.0)?,
-            jitter_us_rms: number_or("jitter_us_rms", jitter_us_rms, default.jitter_us_rms, 0.0..=1e4)?,
-            bursts_per_s: number_or("bursts_per_s", bursts_per_s, default.bursts_per_s, 0.0..=1e4)?,
-            burst_db: number_or("burst_db", burst_db, default.burst_db, -200.0..=200.0)?,
-        })
-    }
-
-    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
-        repr(slf, &NOISE)
-    }
-
-    fn __reduce__<'py>(slf: &Bound<'py, Self>) -> PyResult<Reduced<'py>> {
-        reduce_by_name(slf, attributes(slf, &NOISE)?)
+settings! {
+    Noise(eeruf_sim::Noise) "(*, fading_db_rms=1.5, jitter_us_rms=15.0, bursts_per_s=0.0, burst_db=20.0)" {
+        /// Fading of each arrival's level, root mean square, in dB.
+        fading_db_rms: f64 = number_or(0.0..=20.0),
+        /// Jitter of each arrival, root mean square, in microseconds.
+        jitter_us_rms: f64 = number_or(0.0..=1e4),
+        /// Number of bursts from outside that are heard in a second.
+        bursts_per_s: f64 = number_or(0.0..=1e4),
+        /// Level above the threshold of hearing, in dB.
+        burst_db: f64 = number_or(-200.0..=200.0),
     }
 }
 
@@ -166,8 +132,7 @@ impl Noise {
 pub(crate) fn noise(value: Option<&Bound<'_, PyAny>>) -> PyResult<eeruf_sim::Noise> {
     let Some(value) = value else { return Ok(eeruf_sim::Noise::default()) };
     if let Ok(noise) = value.cast::<Noise>() {
-        let Noise { fading_db_rms, jitter_us_rms, bursts_per_s, burst_db } = *noise.get();
-        return Ok(eeruf_sim::Noise { fading_db_rms, jitter_us_rms, bursts_per_s, burst_db });
+        return Ok(noise.get().0);
     }
     match value.extract() {
         Ok(true) => Ok(eeruf_sim::Noise::default()),

@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use crate::{
     arguments::{instance, number_or, whole_or},
     columns::read_only,
-    fields::{record, repr},
+    fields::{record, settings},
     himm::Himm,
     pose::{point_of, pose_of, to_pose},
 };
@@ -51,88 +51,25 @@ fn grid_of<'a>(grid: &'a Bound<'_, PyAny>) -> PyResult<MutexGuard<'a, eeruf_sim:
     instance::<Himm>("grid", grid, "an eeruf.nav.Himm")?.get().grid.get()
 }
 
-const VFH: [&str; 8] =
-    ["window", "smoothing", "threshold", "wide", "density_max", "speed_max_m_s", "speed_min_m_s", "turn_max_rad_s"];
-
-#[pymethods]
-impl Vfh {
-    #[new]
-    #[pyo3(signature = (
-        *, window=None, smoothing=None, threshold=None, wide=None, density_max=None, speed_max_m_s=None,
-        speed_min_m_s=None, turn_max_rad_s=None
-    ))]
-    #[pyo3(text_signature = "(*, window=33, smoothing=5, threshold=0.35, wide=18, density_max=3.0, \
-            speed_max_m_s=1.0, speed_min_m_s=0.04, turn_max_rad_s=2.0943951023931953)")]
-    #[expect(clippy::too_many_arguments, reason = "keyword arguments")]
-    fn new(
-        window: Option<&Bound<'_, PyAny>>,
-        smoothing: Option<&Bound<'_, PyAny>>,
-        threshold: Option<&Bound<'_, PyAny>>,
-        wide: Option<&Bound<'_, PyAny>>,
-        density_max: Option<&Bound<'_, PyAny>>,
-        speed_max_m_s: Option<&Bound<'_, PyAny>>,
-        speed_min_m_s: Option<&Bound<'_, PyAny>>,
-        turn_max_rad_s: Option<&Bound<'_, PyAny>>,
-    ) -> PyResult<Self> {
-        let default = eeruf_sim::Vfh::default();
-        Ok(Self(eeruf_sim::Vfh {
-            window: whole_or("window", window, default.window, 1..=4096)?,
-            smoothing: whole_or("smoothing", smoothing, default.smoothing, 0..=35)?,
-            threshold: number_or("threshold", threshold, default.threshold, 0.0..=1e6)?,
-            wide: whole_or("wide", wide, default.wide, 1..=72)?,
-            density_max: number_or("density_max", density_max, default.density_max, 1e-6..=1e6)?,
-            speed_max_m_s: number_or("speed_max_m_s", speed_max_m_s, default.speed_max_m_s, 0.0..=50.0)?,
-            speed_min_m_s: number_or("speed_min_m_s", speed_min_m_s, default.speed_min_m_s, 0.0..=50.0)?,
-            turn_max_rad_s: number_or("turn_max_rad_s", turn_max_rad_s, default.turn_max_rad_s, 1e-6..=50.0)?,
-        }))
-    }
-
-    /// Number of cells the active window has on a side.
-    #[getter]
-    fn window(&self) -> usize {
-        self.0.window
-    }
-
-    /// Number of sectors to either side over which the histogram is smoothed.
-    #[getter]
-    fn smoothing(&self) -> usize {
-        self.0.smoothing
-    }
-
-    /// Density below which a sector is free.
-    #[getter]
-    fn threshold(&self) -> f64 {
-        self.0.threshold
-    }
-
-    /// Number of sectors above which a valley is wide.
-    #[getter]
-    fn wide(&self) -> usize {
-        self.0.wide
-    }
-
-    /// The density ahead at which the robot goes no faster than its lowest speed.
-    #[getter]
-    fn density_max(&self) -> f64 {
-        self.0.density_max
-    }
-
-    /// The highest speed, in m/s.
-    #[getter]
-    fn speed_max_m_s(&self) -> f64 {
-        self.0.speed_max_m_s
-    }
-
-    /// The lowest speed, in m/s.
-    #[getter]
-    fn speed_min_m_s(&self) -> f64 {
-        self.0.speed_min_m_s
-    }
-
-    /// The rate of turn at which it goes no faster than its lowest speed, in rad/s.
-    #[getter]
-    fn turn_max_rad_s(&self) -> f64 {
-        self.0.turn_max_rad_s
+settings! {
+    Vfh(eeruf_sim::Vfh) "(*, window=33, smoothing=5, threshold=0.35, wide=18, density_max=3.0, speed_max_m_s=1.0, \
+            speed_min_m_s=0.04, turn_max_rad_s=2.0943951023931953)" {
+        /// Number of cells the active window has on a side.
+        window: usize = whole_or(1..=4096),
+        /// Number of sectors to either side over which the histogram is smoothed.
+        smoothing: usize = whole_or(0..=35),
+        /// Density below which a sector is free.
+        threshold: f64 = number_or(0.0..=1e6),
+        /// Number of sectors above which a valley is wide.
+        wide: usize = whole_or(1..=72),
+        /// The density ahead at which the robot goes no faster than its lowest speed.
+        density_max: f64 = number_or(1e-6..=1e6),
+        /// The highest speed, in m/s.
+        speed_max_m_s: f64 = number_or(0.0..=50.0),
+        /// The lowest speed, in m/s.
+        speed_min_m_s: f64 = number_or(0.0..=50.0),
+        /// The rate of turn at which it goes no faster than its lowest speed, in rad/s.
+        turn_max_rad_s: f64 = number_or(1e-6..=50.0),
     }
 
     /// The smoothed histogram around a place.
@@ -225,9 +162,5 @@ impl Vfh {
         let turn_gain = number_or("turn_gain", turn_gain, TURN_GAIN, 0.0..=100.0)?;
         let turn_most = self.0.turn_max_rad_s;
         Ok(self.0.drive(&*grid_of(grid)?, &pose, target, turn_rad_s, turn_gain, turn_most))
-    }
-
-    fn __repr__(slf: &Bound<'_, Self>) -> PyResult<String> {
-        repr(slf, &VFH)
     }
 }

@@ -270,9 +270,11 @@ impl Doctor {
     fn senders<'n>(&self, scatter: &[Scatter], name: &impl Fn(usize) -> &'n str, found: &mut Examination) {
         /// Significance limit in standard deviations, for twice as many comparisons as there are pairs of sensors.
         const DEVIATIONS: f64 = 5.0;
+        // The least: lags that change at random scatter a fooled sensor's readings.
+        let same_us = scatter.iter().map(|of| of.same_us(*of)).fold(f64::INFINITY, f64::min);
         for (receiver, own) in self.sensors.iter().enumerate().take_while(|_| self.sensors.len() <= MOST_SENSORS) {
             let others = self.sensors.iter().enumerate().filter(|&(other, _)| other != receiver);
-            let follows = others.map(|(other, of)| (other, own.follows(of, scatter[receiver])));
+            let follows = others.map(|(other, of)| (other, own.follows(of, same_us)));
             let seen: Vec<_> = follows.filter(|(_, seen)| seen.is_foreign() && seen.deviations >= DEVIATIONS).collect();
             let most = seen.iter().map(|(_, seen)| seen.share).fold(0.0, f64::max);
             // Those that fire in step with the sender look like it.
@@ -280,6 +282,9 @@ impl Doctor {
                 seen.iter().filter(|(_, of)| of.share > 0.9 * most).map(|&(other, _)| other).collect();
             let Some(&by) = alike.first() else { continue };
             let senders = alike.iter().map(|&other| name(other)).collect::<Vec<_>>().join(" or ");
+            // What the pattern alone could not show is answered.
+            let is_known = found.verdict == LogVerdict::Crosstalk;
+            found.reasons.retain(|_| is_known);
             found.verdict = LogVerdict::Crosstalk;
             found.fooled.push(receiver);
             found.suspects.retain(|of| of.sensor != receiver || of.by == Some(by));

@@ -168,11 +168,10 @@ impl Series {
 
     /// Pairs of consecutive readings between which the lag to another sensor's latest or next firing changes while that
     /// sensor's own echo does not, as it does in a loop that waits for it. Sound of the other moves against the lag by
-    /// as much; an own echo, at rest or in motion, moves equally often with it.
-    pub(crate) fn follows(&self, other: &Self, scatter: Scatter) -> Dependence {
+    /// as much; an own echo, at rest or in motion, moves equally often with it. `same_us` is the tolerance.
+    pub(crate) fn follows(&self, other: &Self, same_us: f64) -> Dependence {
         /// Least and largest change of a lag, in microseconds.
         const CHANGES_US: std::ops::Range<f64> = 300.0..30_000.0;
-        let same_us = scatter.same_us(scatter);
         let before: Vec<usize> = self.firings_before(other).collect();
         let of = |next: bool| {
             let (mut against, mut with, mut pairs) = (0, 0, 0);

@@ -229,7 +229,8 @@ fn sender_is_named_by_the_lag_that_readings_move_against() {
     {
         let examined = |hears: bool| {
             examine(4, Pattern::InTurn, |round, sensor| {
-                let own = 9000.0 + 1500.0 * sensor as f64 + driving_us * (round % 40).abs_diff(20) as f64;
+                let turn = 30 + 7 * sensor as u64;
+                let own = 9000.0 + 1500.0 * sensor as f64 + driving_us * (round % turn).abs_diff(turn / 2) as f64;
                 let sent = at(if sender < fooled { round } else { round.saturating_sub(1) }, sender);
                 let heard = sent as f64 + takes_us - at(round, sensor) as f64;
                 let is_heard = hears && sensor == fooled && (500.0..own).contains(&heard);

@@ -6,6 +6,8 @@ use pyo3::{
     types::{IntoPyDict, PyTuple},
 };
 
+use crate::columns::arrays;
+
 /// The latest accepted reading of a sensor, and counts of the last step.
 #[derive(Clone, Copy)]
 pub(crate) struct Known {
@@ -76,69 +78,36 @@ fn shaped<'py, T: Element>(
     Ok(array)
 }
 
-#[pymethods]
-impl BatchState {
+arrays! {
+    BatchState {
+        /// The time that has passed in each world, in seconds: float64.
+        time_s: |this, py| shaped(py, this.time_s.clone(), (this.worlds,));
+        /// Where the first robots are, x, y and heading in metres and radians: float64 of shape (worlds, 3).
+        pose: |this, py| shaped(py, this.pose.clone(), (this.worlds, 3));
+        /// True where the disc that holds the first robot's sensors touches a wall or a pole: bool.
+        touches: |this, py| shaped(py, this.touches.clone(), (this.worlds,));
+        /// Echo times of the latest accepted readings, in microseconds, NaN where there is none or nothing was in
+        /// range: float64 of shape (worlds, sensors).
+        t_echo_us: |this, py| this.of_sensors(py, |known| known.t_echo_us);
+        /// Time since the latest accepted reading fired, in seconds, infinite where there is none: float64 of shape
+        /// (worlds, sensors).
+        age_s: |this, py| {
+            let age = |(index, known): (usize, &Known)| this.time_s[index / this.sensors] - known.fired_s;
+            shaped(py, this.known.iter().enumerate().map(age).collect(), (this.worlds, this.sensors))
+        };
+        /// True where the latest accepted reading says that nothing is in range: bool of shape (worlds, sensors).
+        is_clear: |this, py| this.of_sensors(py, |known| known.is_clear);
+        /// True where the latest accepted reading is wrong, as :meth:`Readings.is_wrong` judges: bool of shape
+        /// (worlds, sensors).
+        is_wrong: |this, py| this.of_sensors(py, |known| known.is_wrong);
+        /// Number of readings in the last step: int64 of shape (worlds, sensors).
+        readings: |this, py| this.of_sensors(py, |known| known.readings);
+        /// Number of accepted readings in the last step: int64 of shape (worlds, sensors).
+        accepted: |this, py| this.of_sensors(py, |known| known.accepted);
+    }
+
     fn __len__(&self) -> usize {
         self.worlds
-    }
-
-    /// The time that has passed in each world, in seconds: float64.
-    #[getter]
-    fn time_s<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        shaped(py, self.time_s.clone(), (self.worlds,))
-    }
-
-    /// The poses of the first robots, x, y and heading in metres and radians: float64 of shape (worlds, 3).
-    #[getter]
-    fn pose<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        shaped(py, self.pose.clone(), (self.worlds, 3))
-    }
-
-    /// True where the disc that holds the first robot's sensors touches a wall or a pole: bool.
-    #[getter]
-    fn touches<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        shaped(py, self.touches.clone(), (self.worlds,))
-    }
-
-    /// Echo times of the latest accepted readings, in microseconds, NaN where there is none or nothing was in range:
-    /// float64 of shape (worlds, sensors).
-    #[getter]
-    fn t_echo_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.of_sensors(py, |known| known.t_echo_us)
-    }
-
-    /// Time since the latest accepted reading fired, in seconds, infinite where there is none: float64 of shape
-    /// (worlds, sensors).
-    #[getter]
-    fn age_s<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let ages =
-            self.known.iter().enumerate().map(|(index, known)| self.time_s[index / self.sensors] - known.fired_s);
-        shaped(py, ages.collect(), (self.worlds, self.sensors))
-    }
-
-    /// True where the latest accepted reading says that nothing is in range: bool of shape (worlds, sensors).
-    #[getter]
-    fn is_clear<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.of_sensors(py, |known| known.is_clear)
-    }
-
-    /// True where the latest accepted reading is wrong, as :meth:`Readings.is_wrong` judges: bool of shape
-    /// (worlds, sensors).
-    #[getter]
-    fn is_wrong<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.of_sensors(py, |known| known.is_wrong)
-    }
-
-    /// Number of readings in the last step: int64 of shape (worlds, sensors).
-    #[getter]
-    fn readings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.of_sensors(py, |known| known.readings)
-    }
-
-    /// Number of accepted readings in the last step: int64 of shape (worlds, sensors).
-    #[getter]
-    fn accepted<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.of_sensors(py, |known| known.accepted)
     }
 
     fn __repr__(&self) -> String {

@@ -76,3 +76,21 @@ pub(crate) fn room<T>(elements: usize) -> PyResult<Vec<T>> {
         .map_err(|_| PyMemoryError::new_err(format!("an array of {elements} elements of {} bytes", size_of::<T>())))?;
     Ok(vector)
 }
+
+/// The methods of a class whose properties are arrays, each an expression of the object, and further methods.
+macro_rules! arrays {
+    ($class:ident {
+        $($(#[$doc:meta])* $name:ident: |$this:ident, $py:ident| $array:expr;)*
+    } $($more:tt)*) => {
+        #[pymethods]
+        impl $class {
+            $($(#[$doc])* #[getter] fn $name<'py>(&self, $py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
+                let $this = self;
+                $array
+            })*
+
+            $($more)*
+        }
+    };
+}
+pub(crate) use arrays;

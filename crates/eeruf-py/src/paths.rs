@@ -11,7 +11,7 @@ use pyo3::{
 
 use crate::{
     arguments::{shown, whole, wrong},
-    columns::Columns,
+    columns::{Columns, arrays},
     contents::Contents,
     errors::Raise,
     watch::in_background,
@@ -95,63 +95,37 @@ pub(crate) fn coded(bounces: &[Bounce]) -> impl ExactSizeIterator<Item = i64> {
     bounces.iter().map(|bounce| bounce.number())
 }
 
-#[pymethods]
-impl Paths {
+arrays! {
+    Paths {
+        /// The index of the receiver: int64.
+        receiver: |this, py| this.columns.get(py, 0, this.paths.receiver.iter().map(|&index| i64::from(index)));
+        /// The length in metres: float64.
+        length_m: |this, py| this.columns.get(py, 1, this.paths.length_m.iter().copied());
+        /// Number of bounces, those at poles included: int64.
+        order: |this, py| this.columns.get(py, 2, this.paths.order.iter().map(|&index| i64::from(index)));
+        /// The direction from the receiver to the path's last bounce, in (-pi, pi]: float64.
+        departure_rad: |this, py| this.columns.get(py, 3, this.paths.departure_rad.iter().copied());
+        /// The direction in which the receiver sees the path, in (-pi, pi]: float64.
+        arrival_rad: |this, py| this.columns.get(py, 4, this.paths.arrival_rad.iter().copied());
+        /// The amplitude relative to 1 m in free air, without the transducers' patterns: float64.
+        amplitude: |this, py| this.columns.get(py, 5, this.paths.amplitude.iter().copied());
+        /// The elevation at which the path leaves the source, in radians, upwards positive; 0 in a flat scene: float64.
+        departure_elevation_rad: |this, py| {
+            this.columns.get(py, 6, (0..this.paths.len()).map(|path| this.paths.elevations_rad(path)[0]))
+        };
+        /// The elevation in which the receiver sees it, in radians, upwards positive; 0 in a flat scene: float64.
+        arrival_elevation_rad: |this, py| {
+            this.columns.get(py, 7, (0..this.paths.len()).map(|path| this.paths.elevations_rad(path)[1]))
+        };
+    }
+
     fn __len__(&self) -> usize {
         self.paths.len()
     }
 
-    /// The index of the receiver: int64.
-    #[getter]
-    fn receiver<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.columns.get(py, 0, self.paths.receiver.iter().map(|&index| i64::from(index)))
-    }
-
-    /// The length in metres: float64.
-    #[getter]
-    fn length_m<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.columns.get(py, 1, self.paths.length_m.iter().copied())
-    }
-
-    /// Number of bounces, those at poles included: int64.
-    #[getter]
-    fn order<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.columns.get(py, 2, self.paths.order.iter().map(|&index| i64::from(index)))
-    }
-
-    /// The direction from the receiver to the path's last bounce, in (-pi, pi]: float64.
-    #[getter]
-    fn departure_rad<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.columns.get(py, 3, self.paths.departure_rad.iter().copied())
-    }
-
-    /// The direction in which the receiver sees the path, in (-pi, pi]: float64.
-    #[getter]
-    fn arrival_rad<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.columns.get(py, 4, self.paths.arrival_rad.iter().copied())
-    }
-
-    /// The amplitude relative to 1 m in free air, without the transducers' patterns: float64.
-    #[getter]
-    fn amplitude<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.columns.get(py, 5, self.paths.amplitude.iter().copied())
-    }
-
-    /// The elevation at which the path leaves the source, in radians, upwards positive; 0 in a flat scene: float64.
-    #[getter]
-    fn departure_elevation_rad<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.columns.get(py, 6, (0..self.paths.len()).map(|path| self.paths.elevations_rad(path)[0]))
-    }
-
-    /// The elevation at which the receiver sees the path, in radians, upwards positive; 0 in a flat scene: float64.
-    #[getter]
-    fn arrival_elevation_rad<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.columns.get(py, 7, (0..self.paths.len()).map(|path| self.paths.elevations_rad(path)[1]))
-    }
-
-    /// The bounces of each path from source to receiver, a list of tuples: a wall by its index, a pole by -1 minus its
-    /// index, an edge by 2^32 plus its index, the floor by 2^33 and the ceiling by 2^33 + 1. Bounces at floor and
-    /// ceiling come last, in their own order.
+    /// For each path its bounces from source to receiver, a list of tuples: a wall by its index, a pole by -1 minus its
+    /// index, an edge by 2^32 plus its index, the floor by 2^33 and the ceiling by one more. Those at floor and ceiling
+    /// stand last, in their own order.
     #[getter]
     fn walls<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let sequences = (0..self.paths.len()).map(|path| PyTuple::new(py, coded(self.paths.bounces(path))));

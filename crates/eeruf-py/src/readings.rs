@@ -9,7 +9,7 @@ use pyo3::{
 
 use crate::{
     arguments::{instance, items, number_or, shown, wrong},
-    columns::{Codes, Columns, read_only},
+    columns::{Codes, Columns, arrays, read_only},
     errors::EerufError,
     fields::attributes,
     paths::coded,
@@ -46,8 +46,52 @@ impl Readings {
     }
 }
 
-#[pymethods]
-impl Readings {
+arrays! {
+    Readings {
+        /// The robot, from 0: int64.
+        robot: |this, py| this.columns.get(py, 0, this.readings.robot.iter().map(|&robot| i64::from(robot)));
+        /// The sensor on its ring, from 0: int64.
+        sensor: |this, py| this.columns.get(py, 1, this.readings.sensor.iter().map(|&sensor| i64::from(sensor)));
+        /// The period of the firing, from 0: int64.
+        period: |this, py| this.columns.get(py, 2, this.readings.period.iter().map(|&period| i64::from(period)));
+        /// The phase of the firing, 0 for a and 1 for b: int64.
+        phase: |this, py| this.columns.get(py, 3, this.readings.phase.iter().map(|&phase| i64::from(phase)));
+        /// Time of the firing, in seconds: float64.
+        fired_s: |this, py| this.columns.get(py, 4, this.readings.fired_s.iter().copied());
+        /// Where the sensor stood when it fired, in metres of the scene: float64.
+        x_m: |this, py| this.columns.get(py, 13, this.readings.x_m.iter().copied());
+        /// Where the sensor stood when it fired, in metres of the scene: float64.
+        y_m: |this, py| this.columns.get(py, 14, this.readings.y_m.iter().copied());
+        /// The sensor's heading when it fired, in radians of the scene, counter-clockwise from the x axis: float64.
+        heading_rad: |this, py| this.columns.get(py, 15, this.readings.heading_rad.iter().copied());
+        /// Verdict of the method, an index into ``eeruf.KINDS``: int8.
+        kind: |this, py| this.columns.codes(py, 5, Codes::Kinds, this.readings.kind.iter().map(|&kind| kind as i8));
+        /// The echo time that the method reports, in microseconds: float64.
+        t_echo_us: |this, py| this.columns.get(py, 6, this.readings.t_echo_us.iter().copied());
+        /// The earliest echo of the firing, in microseconds: float64.
+        earliest_us: |this, py| this.columns.get(py, 7, this.readings.earliest_us.iter().copied());
+        /// The reading that the sensor would have had alone in quiet air, in microseconds: float64.
+        reference_us: |this, py| this.columns.get(py, 8, this.readings.reference_us.iter().copied());
+        /// Cause of ``t_echo_us``, an index into ``CAUSES``: int8.
+        cause: |this, py| {
+            this.columns.codes(py, 9, Codes::Causes, this.readings.cause.iter().map(|&cause| cause as i8))
+        };
+        /// The index in ``paths`` of the sound's path, or -1 for none: int64.
+        path: |this, py| {
+            let index = |&path: &u32| if path == NO_PATH { -1 } else { i64::from(path) };
+            this.columns.get(py, 10, this.readings.path.iter().map(index))
+        };
+        /// Time when the sound behind ``t_echo_us`` was sent, in seconds: float64.
+        emitted_s: |this, py| this.columns.get(py, 11, this.readings.emitted_s.iter().copied());
+        /// The change that odometry expects since the sensor's firing before, in microseconds; 0 without odometry:
+        /// int32.
+        expected_change_us: |this, py| this.columns.get(py, 16, this.readings.expected_change_us.iter().copied());
+        /// Returns true if the method accepts the reading, an echo or that nothing is in range: bool.
+        is_accepted: |this, py| {
+            this.columns.get(py, 12, (0..this.readings.len()).map(|reading| this.readings.is_accepted(reading)))
+        };
+    }
+
     fn __len__(&self) -> usize {
         self.readings.len()
     }
@@ -70,92 +114,7 @@ impl Readings {
         self.readings.sensors
     }
 
-    /// The robot, from 0: int64.
-    #[getter]
-    fn robot<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.columns.get(py, 0, self.readings.robot.iter().map(|&robot| i64::from(robot)))
-    }
-
-    /// The sensor on its ring, from 0: int64.
-    #[getter]
-    fn sensor<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.columns.get(py, 1, self.readings.sensor.iter().map(|&sensor| i64::from(sensor)))
-    }
-
-    /// The period of the firing, from 0: int64.
-    #[getter]
-    fn period<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.columns.get(py, 2, self.readings.period.iter().map(|&period| i64::from(period)))
-    }
-
-    /// The phase of the firing, 0 for a and 1 for b: int64.
-    #[getter]
-    fn phase<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.columns.get(py, 3, self.readings.phase.iter().map(|&phase| i64::from(phase)))
-    }
-
-    /// Time of the firing, in seconds: float64.
-    #[getter]
-    fn fired_s<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.columns.get(py, 4, self.readings.fired_s.iter().copied())
-    }
-
-    /// The sensor's x coordinate in the scene when it fired, in metres: float64.
-    #[getter]
-    fn x_m<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.columns.get(py, 13, self.readings.x_m.iter().copied())
-    }
-
-    /// The sensor's y coordinate in the scene when it fired, in metres: float64.
-    #[getter]
-    fn y_m<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.columns.get(py, 14, self.readings.y_m.iter().copied())
-    }
-
-    /// The sensor's heading in the scene when it fired, in radians, counter-clockwise from the x axis: float64.
-    #[getter]
-    fn heading_rad<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.columns.get(py, 15, self.readings.heading_rad.iter().copied())
-    }
-
-    /// Verdict of the method, an index into ``eeruf.KINDS``: int8.
-    #[getter]
-    fn kind<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.columns.codes(py, 5, Codes::Kinds, self.readings.kind.iter().map(|&kind| kind as i8))
-    }
-
-    /// The echo time that the method reports, in microseconds: float64.
-    #[getter]
-    fn t_echo_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.columns.get(py, 6, self.readings.t_echo_us.iter().copied())
-    }
-
-    /// The earliest echo of the firing, in microseconds: float64.
-    #[getter]
-    fn earliest_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.columns.get(py, 7, self.readings.earliest_us.iter().copied())
-    }
-
-    /// The reading that the sensor would have had alone in quiet air, in microseconds: float64.
-    #[getter]
-    fn reference_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.columns.get(py, 8, self.readings.reference_us.iter().copied())
-    }
-
-    /// Cause of ``t_echo_us``, an index into ``CAUSES``: int8.
-    #[getter]
-    fn cause<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.columns.codes(py, 9, Codes::Causes, self.readings.cause.iter().map(|&cause| cause as i8))
-    }
-
-    /// The index in ``paths`` of the sound's path, or -1 for none: int64.
-    #[getter]
-    fn path<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        let index = |&path: &u32| if path == NO_PATH { -1 } else { i64::from(path) };
-        self.columns.get(py, 10, self.readings.path.iter().map(index))
-    }
-
-    /// The paths of all readings: a dict of arrays of equal length.
+    /// Every path of some reading: a dict of arrays of equal length.
     ///
     /// ``emitter_robot``, ``emitter``, ``receiver_robot``, ``receiver`` count from 0; ``order`` is the number of
     /// bounces; ``length_m``, ``departure_rad`` and ``arrival_rad`` are in metres and radians of the scene; ``walls``
@@ -176,25 +135,7 @@ impl Readings {
         Ok(columns)
     }
 
-    /// Time when the sound behind ``t_echo_us`` was sent, in seconds: float64.
-    #[getter]
-    fn emitted_s<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.columns.get(py, 11, self.readings.emitted_s.iter().copied())
-    }
-
-    /// The change since the sensor's previous firing that odometry predicts, in microseconds; 0 without it: int32.
-    #[getter]
-    fn expected_change_us<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.columns.get(py, 16, self.readings.expected_change_us.iter().copied())
-    }
-
-    /// True where the method accepts the reading, an echo or a report that nothing is in range: bool.
-    #[getter]
-    fn is_accepted<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyAny>> {
-        self.columns.get(py, 12, (0..self.readings.len()).map(|reading| self.readings.is_accepted(reading)))
-    }
-
-    /// Find the readings that would be wrong if accepted.
+    /// Returns true if the reading, if accepted, would be wrong.
     ///
     /// Args:
     ///     tolerance_us: largest difference from the reference, in microseconds.
@@ -471,21 +412,8 @@ impl Readings {
 }
 
 /// The arrays of equal length, one entry for each reading.
+#[rustfmt::skip]
 const COLUMNS: [&str; 16] = [
-    "robot",
-    "sensor",
-    "period",
-    "phase",
-    "fired_s",
-    "x_m",
-    "y_m",
-    "heading_rad",
-    "kind",
-    "t_echo_us",
-    "earliest_us",
-    "reference_us",
-    "cause",
-    "path",
-    "emitted_s",
-    "expected_change_us",
+    "robot", "sensor", "period", "phase", "fired_s", "x_m", "y_m", "heading_rad", "kind", "t_echo_us", "earliest_us",
+    "reference_us", "cause", "path", "emitted_s", "expected_change_us",
 ];

@@ -210,9 +210,9 @@ const DRIVES: [&str; 2] = ["waypoints_m", "speed_m_s"];
 /// The other keyword arguments.
 #[rustfmt::skip]
 const OPTIONS: [&str; 22] = [
-    "gain", "period_us", "t_delta_us", "window_us", "blanking_us", "min_refire_us", "start_us", "schedule", "neighbours",
-    "consecutive", "odometry", "clock_offset_us", "clock_drift_ppm", "body", "beam", "coupling_db", "height_m",
-    "together", "audible_us", "path_change_us", "firing", "ring",
+    "gain", "period_us", "t_delta_us", "window_us", "blanking_us", "min_refire_us", "start_us", "schedule",
+    "neighbours", "consecutive", "odometry", "clock_offset_us", "clock_drift_ppm", "body", "beam", "coupling_db",
+    "height_m", "together", "audible_us", "path_change_us", "firing", "ring",
 ];
 
 #[pymethods]

@@ -113,6 +113,9 @@ def test_memory_stays_flat_over_resets() -> None:
 
 def test_environment_passes_the_checker_of_gymnasium() -> None:
     check_env(gymnasium.make("eeruf/Course-v0", numbers=range(5)).unwrapped, skip_render_check=True)
+    # As the module's text says.
+    poses = eeruf.experiments.courses(0, 1)[0].robots[0].sensor_poses
+    assert [round(math.degrees(of[2]), 1) for of in poses[:4]] == [-52.5, -37.5, -22.5, -7.5]
 
 
 def test_vector_environment_repeats_and_begins_anew() -> None:

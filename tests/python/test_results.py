@@ -120,7 +120,8 @@ def test_an_ambiguous_reading_names_its_explanation(by: Any) -> None:
 def test_a_table_prints_as_one() -> None:
     table = eeruf.experiments.set_one(2, readings=400, methods=["eeruf", "conventional"])
     head, *rows = str(table).splitlines()
-    assert head.split("  ")[0] == "method" and "wrong of all %" in head
+    assert head.split("  ")[0] == "method" and "wrong of all % (95 %)" in head
+    assert "    wrong_of_all: Share of all readings that" in (eeruf.typing.Summary.__doc__ or "")
     assert [row.split()[0] for row in rows] == ["eeruf", "conventional"] and len(str(table)) < 500
     low, high = (100 * bound for bound in table.methods["eeruf"].rejected.median_95)  # type: ignore[union-attr]
     assert f"({low:.1f} to {high:.1f})" in rows[0]

@@ -1809,8 +1809,8 @@ void eeruf_pace_event(EerufPace *pace, const EerufEvent *event) {
 bool eeruf_pace_too_slow(EerufPace *pace, const EerufRing *ring, uint32_t now_us) {
     uint8_t x;
     bool slow = pace->late |= !FLOWS(ring) && ring->latest_us > 1000;
-    /* So it answers twice in two seconds, whatever the loop does. */
-    if (now_us - pace->since_us < 950000) return false;
+    /* Twice in two seconds, whatever the loop does in between; one by one two rounds of many sensors take longer. */
+    if (now_us - pace->since_us < (ring->count > 9 ? 100000u * ring->count : 950000u)) return false;
     for (x = 0; x < ring->count; x++) slow |= eeruf_ring_is_enabled(ring, x) && !(pace->twice >> (x & 31) & 1);
     pace->since_us = now_us;
     pace->heard = pace->twice = 0;

@@ -405,8 +405,8 @@ typedef struct EerufPace {
 } EerufPace;
 /* Records an event of a poll. */
 void eeruf_pace_event(EerufPace *pace, const EerufEvent *event);
-/* True, about once a second, if the loop is too slow: a sensor had no two punctual readings in a row, or a table's
-   firings were more than a millisecond late, which makes readings ambiguous. */
+/* True if the loop is too slow, about once a second, and from ten sensors on once in 0.1 s a sensor: one had no two such
+   readings in it, or a table's firings came more than a millisecond late, which makes readings ambiguous. */
 bool eeruf_pace_too_slow(EerufPace *pace, const EerufRing *ring, uint32_t now_us);
 
 /* ---- Distances ---- */

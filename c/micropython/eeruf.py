@@ -694,7 +694,7 @@ class HcSr04FlowRing:
     def too_slow(self):
         """Return true about once a second if `read` is called too rarely: a module had no two punctual readings in a row."""
         now, twice = self._time.ticks_us(), self._twice
-        if self._time.ticks_diff(now, self._since) < 950000:
+        if self._time.ticks_diff(now, self._since) < max(950000, 100000 * self.ring.flow.sensors):  # two rounds one by one
             return False
         self._since, self._heard, self._twice = now, 0, 0
         return not self.ring._paused and any(s.enabled and not twice >> x & 1 for x, s in enumerate(self.ring._sensors))

@@ -26,6 +26,7 @@ mod rings_in_scenes;
 mod rooms;
 mod ros2;
 mod scene;
+mod seeds;
 mod started;
 mod study;
 mod warnings;

@@ -1,8 +1,5 @@
 //! `eeruf design --program`: its refusals, and the listings of README. `cargo xtask programs` builds and runs programs.
 
-use std::collections::BTreeSet;
-use std::process::Command;
-
 use crate::common::{Scratch, eeruf};
 
 /// Checks that README's four lines are a ring file, that each language has its program, and that none overwrites
@@ -74,30 +71,4 @@ fn programs_that_cannot_be_are_refused_by_what_is_expected() {
         assert_eq!(said.code, Some(2), "{words:?}: {}", said.out);
         assert!(said.err.contains(expected), "{words:?}: {}", said.err);
     }
-}
-
-/// Checks that sketches draw a seed on a board whose chip has no number, and keep it.
-#[test]
-fn six_boards_with_one_sketch_draw_six_seeds() {
-    let (folder, _) = Scratch::new("robot.toml", "");
-    let program = folder.path().join("seeds");
-    let built = Command::new("g++")
-        .args([
-            "-std=c++11",
-            "-Wall",
-            "-Wextra",
-            "-Werror",
-            "-Wno-int-to-pointer-cast",
-            "-D__AVR__",
-            "-Itests/programs",
-        ])
-        .args(["-Ic/arduino/src", "tests/programs/seed.cpp", "-o"])
-        .arg(&program)
-        .current_dir(env!("CARGO_MANIFEST_DIR"))
-        .output()
-        .expect("g++ runs");
-    assert!(built.status.success(), "{}", String::from_utf8_lossy(&built.stderr));
-    let said = String::from_utf8(Command::new(program).output().unwrap().stdout).unwrap();
-    let seeds: BTreeSet<_> = said.lines().filter_map(|line| line.strip_suffix(" 1")).collect();
-    assert!(seeds.len() == 6 && !seeds.contains("0"), "seeds, and whether the next start has the same:\n{said}");
 }

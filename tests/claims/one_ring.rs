@@ -8,7 +8,7 @@ use eeruf_design::{Effort, RingSpec};
 use eeruf_hc_sr04::{HcSr04Ring, Settings};
 use eeruf_sim::modules::{Module, ModulesFile, PulseTimes};
 
-use crate::common::{Scratch, eeruf};
+use crate::common::{C, Scratch, compile_and_run, eeruf};
 use crate::rings_in_scenes::scene;
 use crate::started::{FORMS, rings, run_c};
 
@@ -439,4 +439,29 @@ fn every_key_of_a_ring_file_reaches_its_ring() {
         let error = RingSpec::from_text(&format!("{}\n{more}", without.join("\n"))).unwrap_err();
         assert!(error.message().starts_with(expected), "{error}");
     }
+}
+
+/// Checks that the name of a module and a number of sensors make the same ring in Rust, C and MicroPython as a file.
+#[test]
+fn ring_of_a_module_alone_is_that_of_its_file() {
+    let (folder, file) = Scratch::new("ring.toml", "sensors = 8\nmodule = \"hc-sr04\"\nlayout = \"ring\"\n");
+    let emitted = eeruf(&["design", file.to_str().unwrap(), "--places", "1", "--emit", "c"]).out;
+    std::fs::write(folder.path().join("ring.h"), &emitted).unwrap();
+    let equal = ["window_us", "blanking_us", "least_us", "most_us", "rest_us", "dice_us", "t_delta_us", "near_us"]
+        .map(|number| format!("mine.{number} == eeruf_flow_config.{number}"));
+    let text = format!(
+        "#include \"eeruf.h\"\n#include \"ring.h\"\nint main(void) {{\n    const EerufFlowConfig mine = EERUF_FLOW_HC_SR04(8);\n    return \
+         !({});\n}}\n",
+        equal.join(" && ")
+    );
+    compile_and_run(&folder, &text, C);
+    let python = "import sys; sys.path.insert(0, 'c/micropython'); import eeruf\n\
+        f = eeruf.Flow(8, seed=1, **eeruf.HC_SR04)\n\
+        print(f'{f.window_us}u, {f.blanking_us}u, {f.least_us}u, {f.most_us}u, {f.rest_us}u, {f.dice_us}u', end='')";
+    let mut said = std::process::Command::new("python3");
+    let said = said.args(["-c", python]).current_dir(env!("CARGO_MANIFEST_DIR")).output().unwrap().stdout;
+    assert!(said.len() > 20 && emitted.contains(std::str::from_utf8(&said).unwrap()), "{emitted}");
+    let ring = eeruf_hc_sr04::flow_ring::<8>(&eeruf_hc_sr04::modules::HC_SR04).unwrap();
+    let of_ring = format!("{}u, {}u, ", ring.window().as_micros(), ring.blanking().as_micros());
+    assert!(said.starts_with(of_ring.as_bytes()), "{of_ring}");
 }

@@ -75,4 +75,4 @@ pub use lines::{FlexPin, Pins};
 pub use pace::Pace;
 pub use ring::{Edges, HcSr04Ring};
 pub use sampler::Sampler;
-pub use settings::Settings;
+pub use settings::{Settings, flow_ring};

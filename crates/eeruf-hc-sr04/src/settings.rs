@@ -1,6 +1,7 @@
 //! [`Settings`]: times and limits of the sensors.
 
-use eeruf_core::Micros;
+use eeruf_core::flow::{BeliefSettings, FlowRing, TurnSettings};
+use eeruf_core::{Instant, Micros, RingConfig, RingError, SpeedOfSound};
 use eeruf_modules::{HC_SR04, Module};
 
 use crate::error::SetupError;
@@ -61,6 +62,41 @@ impl Settings {
         let min_retrigger = self.min_retrigger;
         if min_refire < min_retrigger { Err(SetupError::Retrigger { min_refire, min_retrigger }) } else { Ok(()) }
     }
+}
+
+/// Makes a flow ring of `K` such modules, which listen as far as they see, with all times from the module, as
+/// `eeruf design` has them at 20 degrees Celsius. The compiler can make it, for a `static`; then give it the robot's
+/// own seed ([`FlowRing::set_seed`]) and the present time ([`restart`](eeruf_core::Ring::restart)).
+///
+/// ```
+/// use eeruf_core::{Instant, flow::FlowRing};
+/// use eeruf_hc_sr04::{flow_ring, modules::HC_SR04};
+/// use std::sync::Mutex; // on a board a mutex of its own, or a cell
+///
+/// static RING: Mutex<FlowRing<8>> = Mutex::new(match flow_ring(&HC_SR04) {
+///     Ok(ring) => ring,
+///     Err(_) => panic!("the times of an HC-SR04 are valid"),
+/// });
+///
+/// let mut ring = RING.lock().unwrap();
+/// ring.set_seed(0xe661_0001)?;
+/// ring.restart(Instant::from_micros(5_000));
+/// assert_eq!((ring.sensors(), ring.window().as_micros(), ring.blanking().as_micros()), (8, 23_310, 117));
+/// # Ok::<(), eeruf_core::RingError>(())
+/// ```
+///
+/// # Errors
+/// As for [`FlowRing::flow`], for times of the module that are out of range.
+pub const fn flow_ring<const K: usize>(module: &Module) -> Result<FlowRing<K>, RingError> {
+    const SOUND: SpeedOfSound = SpeedOfSound::at_celsius_tenths(200);
+    let (window, audible) = (SOUND.echo_time(module.sees_to_mm), SOUND.echo_time(module.hears_to_mm).as_micros());
+    let (blanking, rest_us) = (Micros::new(module.blanking_us), module.rest_us);
+    // A sensor that fires while its last sound is heard would take old echoes for new ones.
+    let rest = Micros::new(if rest_us > audible { rest_us } else { audible });
+    let turns = TurnSettings::for_module(1, window, rest, blanking);
+    let turns = TurnSettings { most: Micros::new(audible), least: Micros::new(audible / 11 * 2), ..turns };
+    let config = RingConfig::new().with_window(window).with_blanking(blanking);
+    FlowRing::flow(K, turns, BeliefSettings::DEFAULT, config, Instant::from_micros(0))
 }
 
 impl Default for Settings {

@@ -142,7 +142,7 @@ fn six_boards_with_one_sketch_draw_six_seeds() {
         lines(
             &folder,
             cpp.arg("-DSKETCH=\"robot.ino\"")
-                .arg(format!("-I."))
+                .arg("-I.")
                 .arg(format!("{root}/tests/programs/seed.cpp"))
                 .args(["-o", "seeds"]),
         );

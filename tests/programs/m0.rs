@@ -57,7 +57,11 @@ fn main() -> ! {
         let now = eeruf_board::now();
         is_slow |= pace.too_slow(ring.ring(), now);
         if now.has_reached(next) {
-            wait_until(now + Micros::new(WORK));
+            if MASKED {
+                critical_section::with(|_| wait_until(now + Micros::new(WORK)));
+            } else {
+                wait_until(now + Micros::new(WORK));
+            }
             next = now + Micros::new(EVERY);
         }
     }

@@ -33,7 +33,7 @@ BOARD = Board()
 
 
 def wall_us(module):
-    return 2000 + module * 618 % 1000 * 20
+    return 2000 + module * 618 % 1000 * SPAN
 
 
 class Pin:
@@ -98,7 +98,7 @@ import eeruf  # noqa: E402
 said, readings, read = [], [], eeruf.HcSr04FlowRing.read
 
 
-WORK, EVERY = map(int, os.environ.get("LOAD", "0 0").split()[:2])
+WORK, EVERY, SPAN = map(int, os.environ.get("LOAD", "0 0 20").split())
 
 
 def told(ring):

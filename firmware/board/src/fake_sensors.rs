@@ -83,6 +83,16 @@ fn trigger(sensor: usize) {
 /// Returns a pending edge, if any, like an interrupt controller. The handler of the echo interrupt calls this until
 /// there is none.
 pub fn edge() -> Option<Edge> {
+    taken().map(|(edge, _)| edge)
+}
+
+/// Returns the edge that has come, if any, with the instant that a timer's capture register holds, however late the
+/// interrupt is.
+pub fn captured() -> Option<Edge> {
+    taken().map(|(edge, at)| Edge { at, ..edge })
+}
+
+fn taken() -> Option<(Edge, Instant)> {
     let at = crate::now();
     with(|_, sensors| {
         for (x, cell) in sensors.lines.iter().enumerate() {
@@ -96,7 +106,7 @@ pub fn edge() -> Option<Edge> {
                 line.fall = None;
             }
             cell.set(line);
-            return Some(Edge { sensor: x as u8, high: line.high, at });
+            return Some((Edge { sensor: x as u8, high: line.high, at }, due));
         }
         sensors.set_timer();
         None

@@ -20,8 +20,6 @@ const SKETCH: &str = include_str!("loads/Loads.ino");
 /// The ring that `design` emits, with another number of modules.
 const RING: &str = "rings/hc-sr04-8.toml";
 const RINGS: [usize; 2] = [6, 8];
-const SEED: u64 = 20_000;
-const DRAWN: usize = 20;
 /// The file with all figures.
 const FILE: &str = "tests/data/arduino-loads.csv";
 const POLLED: &str = "polled";
@@ -42,14 +40,14 @@ pub(super) struct Load {
     baud: u32,
     /// True if the work masks interrupts; otherwise it may wait for `quietFor()` too.
     pub(super) masks: bool,
-    waits: bool,
-    /// Least number of right readings a second in the alcove, from six polled modules that fire by a table, with edges
-    /// stamped when they are seen.
+    pub(super) waits: bool,
+    /// Least number of right readings a second of six polled modules in the alcove, for a table with edges stamped as
+    /// seen.
     least: f64,
     /// Largest number of wrong readings a second: polled, and by interrupt.
     most: [f64; 2],
-    /// The least share of accepted firings by interrupt, in percent, with separate walls.
-    accepted: f64,
+    /// The least share of accepted firings by interrupt, in percent, before walls of their own.
+    pub(super) accepted: f64,
 }
 
 pub(super) const fn load(work_us: u32, every_us: u32, least: f64) -> Load {
@@ -113,14 +111,6 @@ impl Load {
             0 => format!("delay({}){how}", ms(self.work_us)),
             every => format!("{} ms every {} ms{how}", ms(self.work_us), ms(every)),
         }
-    }
-
-    /// Draws a load: 0.2 to 8 ms, for up to half of the time; one in five in every turn.
-    fn drawn(state: &mut u64) -> Self {
-        let mut up_to = |most: u32| up_to(state, most);
-        let work_us = 200 + 100 * up_to(79);
-        let every_us = 2 * work_us + 100 * up_to(400);
-        if up_to(5) == 0 { load(1_000 * work_us.div_ceil(1_000), 0, 0.0) } else { load(work_us, every_us, 0.0) }
     }
 
     /// Returns the figures of a ring that break a promise.
@@ -248,9 +238,6 @@ impl Ring<'_> {
 /// Runs all loads and writes their figures, or runs a few of them for CI.
 pub(super) fn run(library: &Path, newping: Option<&Path>, all: bool) -> Result<()> {
     let world = world::build()?;
-    let mut state = SEED;
-    let mut loads = KINDS.to_vec();
-    loads.extend((0..DRAWN).map(|_| Load::drawn(&mut state)));
     let mut sketches = vec![];
     for modules in RINGS {
         let mut of_ring = vec![];
@@ -272,16 +259,13 @@ pub(super) fn run(library: &Path, newping: Option<&Path>, all: bool) -> Result<(
         let in_place = |number: usize| if all { number < RINGS.len() || *modules > RINGS[0] } else { number == 0 };
         for (number, place) in places.iter().enumerate().filter(|(number, _)| in_place(*number)) {
             let is_compared = *modules == RINGS[0] && number == 0;
-            // Drawn loads run once in each place, and once for each ring.
-            let is_diagonal = RINGS.get(number) == Some(modules);
-            let kinds = || loads[..if is_diagonal { loads.len() } else { KINDS.len() }].iter().enumerate();
             let mut runs = vec![];
             for (elf, edges, work) in of_ring {
                 if !work.is_empty() {
                     runs.push(Run { elf, edges, work: work.clone(), load: None });
                     continue;
                 }
-                let chosen = kinds().filter(|(number, _)| all || CORNER.contains(number));
+                let chosen = KINDS.iter().enumerate().filter(|(number, _)| all || CORNER.contains(number));
                 runs.extend(chosen.map(|(_, load)| Run { elf, edges, work: load.name(), load: Some(load) }));
             }
             rings.push(Ring { modules: *modules, place, is_compared, runs });

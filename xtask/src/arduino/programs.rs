@@ -27,6 +27,13 @@ pub(crate) struct Drawn {
     /// The seed of the draws
     #[arg(long, default_value_t = 1)]
     seed: u64,
+    /// Run instead six modules beside each other work of tests/data/arduino-loads.csv on an Uno, a Mega and an emulated
+    /// M0
+    #[arg(long)]
+    loads: bool,
+    /// Only rows that contain this text, as "12 | arduino --way flow | delay(3)"; by default all
+    #[arg(long, value_name = "TEXT", default_value = "")]
+    only: String,
 }
 
 /// A requested program: ring file or number of modules, options, and the other work of its loop.
@@ -40,10 +47,21 @@ const CAR: &str = "tests/data/car-4.toml";
 /// A ring whose file names no module, and which listens only as far as its ranges.
 const CAR_12: &str = "rings/car-12.toml";
 const MAVLINK: &str = "arduino --mavlink";
+/// A crate whose edges a timer's capture registers stamp.
+const CAPTURED: &str = "rust --way flow captured";
 /// Programs for the car alone.
 const OF_CAR: [&str; 2] = [MAVLINK, "rust --way two-phases"];
-const RINGS: [&str; 8] =
-    [CAR, "2", "6", "rings/hc-sr04-8.toml", "12", "rings/magni-5.toml", "rings/nao-2.toml", CAR_12];
+const RINGS: [&str; 9] = [
+    CAR,
+    "2",
+    "6",
+    "rings/hc-sr04-8.toml",
+    "12",
+    "rings/magni-5.toml",
+    "rings/nao-2.toml",
+    "rings/pmb2-3.toml",
+    CAR_12,
+];
 const LANGUAGES: [&str; 4] = ["arduino", "c", "rust", "micropython"];
 const WAYS: [&str; 4] = ["flow", "sequential", "groups", "two-phases"];
 /// Combinations that run in CI.
@@ -79,21 +97,22 @@ pub(crate) fn programs(drawn: &Drawn, short: bool) -> Result<()> {
     let (world, program) = (world::build()?, program()?);
     let mut state = drawn.seed;
     let mut asked = vec![];
-    let rings = match drawn.combinations {
-        0 => &RINGS[..if short { 1 } else { RINGS.len() }],
-        _ => &[],
-    };
-    for ring in rings {
-        // The car's sensors have limits of their own, which MicroPython's ring does not support.
+    let rings = if drawn.combinations > 0 || drawn.loads { 0 } else { [RINGS.len(), 1][usize::from(short)] };
+    for load in loads::KINDS.into_iter().filter(|_| drawn.loads) {
+        // The crate has no call that waits until it is quiet.
+        let programs = ["arduino --way flow", "arduino --way flow --board mega", CAPTURED];
+        let programs = programs.into_iter().filter(|program| *program != CAPTURED || !load.waits);
+        asked.extend(programs.map(|options| Asked::new("6", options, Some(load))));
+    }
+    for ring in &RINGS[..rings] {
+        // Its sensors have limits of their own, which MicroPython's ring has not.
         let languages = &LANGUAGES[..if *ring == CAR_12 { 3 } else { 4 }];
-        asked.extend(languages.iter().chain(OF_CAR.iter().filter(|_| *ring == CAR)).map(|options| Asked {
-            ring: (*ring).to_owned(),
-            options: (*options).to_owned(),
-            load: None,
-        }));
+        let programs = languages.iter().chain(OF_CAR.iter().filter(|_| *ring == CAR));
+        asked.extend(programs.map(|options| Asked::new(ring, options, None)));
     }
     let count = if short { CORNER } else { drawn.combinations };
     asked.extend((0..count).map(|_| Asked::drawn(&mut state)));
+    asked.retain(|asked| asked.name().contains(&drawn.only));
     println!("| ring | program | other work | accepted | worst module | wrong | in the alcove: stack, wrong |");
     println!("|---|---|---|---:|---:|---:|---:|");
     let workers = thread::available_parallelism().map_or(1, usize::from);
@@ -102,8 +121,7 @@ pub(crate) fn programs(drawn: &Drawn, short: bool) -> Result<()> {
         while let Some((number, asked)) =
             Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|n| Some((n, asked.get(n)?)))
         {
-            let work = asked.load.as_ref().map_or_else(|| "-".to_owned(), Load::name);
-            let name = format!("{} | {} | {work}", asked.ring, asked.options);
+            let name = asked.name();
             match asked.row(&folder.join(format!("ring_{number}")), short, [&program, &world]) {
                 Ok(row) => println!("| {name} | {row} |"),
                 Err(error) => failed.lock().unwrap_or_else(PoisonError::into_inner).push(error.context(name)),
@@ -122,6 +140,10 @@ pub(crate) fn programs(drawn: &Drawn, short: bool) -> Result<()> {
 }
 
 impl Asked {
+    fn new(ring: &str, options: &str, load: Option<Load>) -> Self {
+        Self { ring: ring.to_owned(), options: options.to_owned(), load }
+    }
+
     /// Draws a valid combination.
     fn drawn(state: &mut u64) -> Self {
         loop {
@@ -133,13 +155,7 @@ impl Asked {
             let polled = up_to(4) == 0;
             let (sketch, python) = (language == "arduino", language == "micropython");
             // A Pico has pins for 13, and the emulated board twelve fake modules.
-            let most = if python {
-                13
-            } else if language == "rust" {
-                12
-            } else {
-                24
-            };
+            let most = if python { 13 } else { [24, 12][usize::from(language == "rust")] };
             let is_unknown = python && ["groups", "two-phases"].contains(&way) || load.masks && !sketch;
             if modules > most || is_unknown || way == "groups" && modules % 4 != 0 {
                 continue;
@@ -147,8 +163,14 @@ impl Asked {
             let board = if sketch && modules > 16 { " --board mega" } else { "" };
             let edges = if sketch && polled { " polled" } else { "" };
             let options = format!("{language} --way {way}{board}{edges}");
-            return Self { ring: modules.to_string(), options, load: Some(load) };
+            return Self::new(&modules.to_string(), &options, Some(load));
         }
+    }
+
+    /// The first columns of its row.
+    fn name(&self) -> String {
+        let work = self.load.as_ref().map_or_else(|| "-".to_owned(), Load::name);
+        format!("{} | {} | {work}", self.ring, self.options)
     }
 
     /// Runs a program, and returns the columns of its figures, if they are good enough.
@@ -163,7 +185,8 @@ impl Asked {
         }
         let ring = out.with_extension("toml");
         fs::write(&ring, text)?;
-        let words = format!("{} --places 1 --budget 20000", self.options.replace(" polled", ""));
+        let words =
+            format!("{} --places 1 --budget 20000", self.options.replace(" polled", "").replace(" captured", ""));
         let mut design = Command::new(program);
         output(design.arg("design").arg(ring).arg("--program").args(words.split(' ')).arg("--out").arg(out))?;
         let polled = self.options.ends_with("polled") || self.options.starts_with("micropython");
@@ -172,13 +195,13 @@ impl Asked {
             Some("arduino") => self.sketch(out, seconds, world)?,
             Some("micropython") => self.counted(Command::new("python3").arg(format!("{WALLS}/walls.py")).arg(out))?,
             Some("c") => self.counted(&mut c(out)?)?,
-            _ => self.counted(&mut rust(out, &self.work())?)?,
+            _ => self.counted(&mut rust(out, self)?)?,
         };
         let Figures { accepted, worst, wrong, in_alcove, says_so } = figures;
         let (least, least_of_worst) = match self.load {
             None => (95.0, 85.0),
             Some(_) if polled || self.options.contains("two-phases") || says_so => (0.0, 0.0),
-            Some(_) => (70.0, 70.0),
+            Some(load) => (load.accepted.max(70.0), 70.0),
         };
         // In the alcove, sensors of a group hear each other, so groups are not recommended there.
         let foreign = in_alcove.filter(|_| !self.options.contains("groups")).map_or(0.0, |(_, foreign)| foreign);
@@ -201,7 +224,9 @@ impl Asked {
     /// file gives ranges, listens only briefly.
     fn work(&self) -> [String; 3] {
         let [work, every] = self.load.map_or([0; 2], |load| [load.work_us, load.every_us]);
-        [work, every, if self.ring.parse::<u8>().is_ok() { 20 } else { 9 }].map(|us| us.to_string())
+        // A PMB-2 sees 1 m.
+        let of_file = if self.ring.contains("pmb2") { 4 } else { 9 };
+        [work, every, if self.ring.parse::<u8>().is_ok() { 20 } else { of_file }].map(|us| us.to_string())
     }
 
     /// Figures of a harness that prints, for each module, its readings, those accepted and those wrong. It takes the
@@ -226,7 +251,7 @@ impl Asked {
         })
     }
 
-    /// Returns figures of a sketch, built as the IDE does, from its folder alone. With eight modules or fewer it also
+    /// Returns figures of a sketch, built as the IDE does, from its folder alone. With twelve modules or fewer it also
     /// runs in the alcove.
     fn sketch(&self, folder: &Path, seconds: u32, world: &Path) -> Result<Figures> {
         let mut text = sketch_in(folder)?;
@@ -248,12 +273,9 @@ impl Asked {
             text = format!("{polled}#include <avr/eeprom.h>\n{text}");
             eeprom = load.eeprom();
         }
-        let (board, options) = match self.options.contains("mega") {
-            true => (Board::Mega, vec!["--mega"]),
-            false => (Board::Uno, vec![]),
-        };
-        let (elf, pins) = built(folder, board, &text)?;
-        let options = [&options[..], &["--eeprom", &eeprom]].concat();
+        let is_mega = self.options.contains("mega");
+        let (elf, pins) = built(folder, if is_mega { Board::Mega } else { Board::Uno }, &text)?;
+        let options = [&["--mega"][usize::from(!is_mega)..], &["--eeprom", &eeprom]].concat();
         let modules = pins.len() / 2;
         let ways = folder.join("walls.txt");
         // By the golden section, so that no two are alike.
@@ -272,9 +294,12 @@ impl Asked {
         let (accepted, worst) = (heard.shares().0.min(100.0), heard.shares().1.0.min(100.0));
         let wrong = heard.wrong_percent();
         let mut in_alcove = None;
-        if modules <= 8 {
-            let own_mm = world::own_walls(&fs::read_to_string(world::KEPT)?);
-            let mut command = world::command(world, &options, &elf, seconds, Path::new(world::KEPT), &pins);
+        if modules <= 12 {
+            let (alcove, own_mm) = match modules {
+                9.. => world::echo_times(modules)?,
+                _ => (world::KEPT.into(), world::own_walls(&fs::read_to_string(world::KEPT)?)),
+            };
+            let mut command = world::command(world, &options, &elf, seconds, &alcove, &pins);
             let heard = world::hear_by(&mut command, seconds, &own_mm)?;
             in_alcove = Some((heard.stack, heard.wrong_percent()));
         }
@@ -349,7 +374,7 @@ fn c(folder: &Path) -> Result<Command> {
 }
 
 /// Builds a crate for an emulated Cortex-M0, with this checkout's crates in place of the repository that it names.
-fn rust(folder: &Path, [work, every, span]: &[String; 3]) -> Result<Command> {
+fn rust(folder: &Path, asked: &Asked) -> Result<Command> {
     let name = folder.file_name().unwrap_or_default().to_string_lossy();
     let (root, manifest) = (std::env::current_dir()?, folder.join("Cargo.toml"));
     let mut text = fs::read_to_string(&manifest)?;
@@ -359,7 +384,10 @@ fn rust(folder: &Path, [work, every, span]: &[String; 3]) -> Result<Command> {
     }
     fs::write(&manifest, text)?;
     let root = root.to_string_lossy();
+    let edge = if asked.options == CAPTURED { "captured()" } else { "edge()" };
+    let ([work, every, span], masked) = (&asked.work(), asked.load.is_some_and(|load| load.masks).to_string());
     let mut values = vec![("NAME", &*name), ("ROOT", &root), ("WORK", work), ("EVERY", every), ("SPAN", span)];
+    values.extend([("edge()", edge), ("MASKED", &masked)]);
     if !fs::read_to_string(folder.join("src/lib.rs"))?.contains("seed: u32") {
         // A table has no dice, and needs no speed.
         values.extend([("7, now", "now"), ("    ring.moving(0, 0, now);\n", "")]);

@@ -74,7 +74,7 @@ pub(super) fn build() -> Result<PathBuf> {
 
 /// Writes the paths of sound among the scene's eight modules, or among more of them all around, to a file; also returns
 /// the distance that each module should measure.
-fn echo_times(modules: usize) -> Result<(PathBuf, BTreeMap<usize, u32>)> {
+pub(super) fn echo_times(modules: usize) -> Result<(PathBuf, BTreeMap<usize, u32>)> {
     let sensors = (modules > 8).then(|| modules.to_string());
     let times = output(Command::new(crate::toolchain::lab()?).args(["echo-times", SCENE]).args(&sensors))? + "\n";
     if sensors.is_none() && fs::read_to_string(KEPT)? != times {

@@ -15,14 +15,6 @@ int analogRead(uint8_t) {
     return 300 + (noise >> 30);
 }
 
-uint32_t eeprom_read_dword(const uint32_t *) {
-    return eeprom;
-}
-
-void eeprom_write_dword(uint32_t *, uint32_t value) {
-    eeprom = value;
-}
-
 int main() {
     for (board = 1; board <= 6; board++) {
         noise = board, clock_us = 4000, eeprom = 0xffffffff;

@@ -50,6 +50,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         }
     };
     console::set(cli.output.settings());
+    let _running = report::watch::said();
     let code = match check_outputs(&matches).and_then(|()| warn_of_options(&matches)).and_then(|()| cli.verb.run()) {
         Ok(Answer::Yes) => 0,
         Ok(Answer::No) => 1,

@@ -68,13 +68,13 @@ fn search(args: &Args, path: &Path) -> Result<Answer, InputError> {
     if found.contains('\n') && !found.starts_with(header()) && rows(&found).next().is_none() {
         return Err(InputError::new(
             path,
-            "no row of an atlas; expected a file that `eeruf atlas` wrote, or a new name",
+            "no row of an atlas; expected a file that `eeruf lab atlas` wrote, or a new name",
         ));
     }
     let rings: Vec<Ring> = all_rings().into_iter().filter(|ring| ring.sensors <= args.most_sensors).collect();
     end_last_line(path).map_err(bad)?;
     let done: BTreeSet<Ring> = rows(&read(path).map_err(bad)?).map(|row| row.ring).collect();
-    let mut watch = Watch::new();
+    let watch = Watch::new();
     let (share, of) = (args.shard.part as usize - 1, args.shard.of as usize);
     let numbered = rings.iter().enumerate().filter(|&(number, _)| is_in_shard(number, share, of));
     let left: Vec<&Ring> = numbered.map(|(_, ring)| ring).filter(|ring| !done.contains(ring)).collect();
@@ -95,7 +95,7 @@ fn search(args: &Args, path: &Path) -> Result<Answer, InputError> {
 fn search_again(path: &Path, nodes: u64, most_sensors: u8) -> Result<Answer, InputError> {
     let bad = |error: std::io::Error| FileError::writing(path, &error);
     let mut all: Vec<Row> = rows(&read(path).map_err(|error| FileError::reading(path, &error))?).collect();
-    let (mut watch, mut answer) = (Watch::new(), Answer::Yes);
+    let (watch, mut answer) = (Watch::new(), Answer::Yes);
     let count = all.len();
     for (number, row) in all.iter_mut().enumerate().filter(|(_, row)| row.ring.sensors <= most_sensors) {
         if !watch.go_on(|| format!("{number} of {count} rings, now {}", row.ring)) {

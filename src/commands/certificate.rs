@@ -20,9 +20,9 @@ pub(crate) struct Written {
 }
 
 impl Written {
-    /// Proves that the design's period is the shortest, or that none is below the search's bound, or else a lower
-    /// bound within budget and time.
-    pub(crate) fn new(design: &RingDesign, budget: usize, watch: &mut Watch) -> Self {
+    /// Proves that the design's period is the shortest, or that none is below the search's bound; a lower bound, if
+    /// budget and time do not suffice for that.
+    pub(crate) fn new(design: &RingDesign, budget: usize, watch: &Watch) -> Self {
         let go_on = |nodes| watch.go_on(|| format!("certificate: {nodes} nodes"));
         match design.prove(budget, go_on) {
             Ok(text) => Self { claim: claim(&text, design), text: Ok(text) },

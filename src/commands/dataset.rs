@@ -1,6 +1,7 @@
 //! `eeruf lab dataset`: simulated readings with the cause of each.
 
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use eeruf_sim::experiments::set_one::{Alcove, SetOneOptions, world_of};
 use eeruf_sim::experiments::set_two::{SetTwoOptions, drive};
@@ -64,11 +65,9 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let each = |number: u64| METHODS.map(|method| (number, method));
     let mut jobs: Vec<_> = alcoves.flat_map(each).map(|(number, method)| Job::Alcove(number, method)).collect();
     jobs.extend(courses.flat_map(each).map(|(number, method)| Job::Course(number, method)));
-    let watch = std::sync::Mutex::new((Watch::new(), 0));
+    let (watch, done) = (Watch::new(), AtomicUsize::new(0));
     let go_on = |is_done: bool| {
-        let mut shared = watch.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-        let (watch, done) = &mut *shared;
-        *done += usize::from(is_done);
+        let done = done.fetch_add(usize::from(is_done), Ordering::Relaxed);
         watch.go_on(|| format!("{done} of {} files", jobs.len()))
     };
     let written = sweep(&jobs, |&job| {

@@ -202,7 +202,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         return curve_of(args, &spec, curve.need());
     }
     let began = Instant::now();
-    let mut watch = Watch::ending_after(args.time_limit.unwrap_or(Duration::MAX));
+    let watch = Watch::ending_after(args.time_limit.unwrap_or(Duration::MAX));
     let mut control = |progress: &Progress| {
         let how_far = || {
             let (bound, best) = (progress.bound.unwrap_or(0), progress.best.unwrap_or(0));
@@ -223,20 +223,20 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let seconds = began.elapsed().as_secs_f64();
     watch.forget_interrupt();
     if let Some(language) = args.program.program {
-        return program::run(&args.program, (&args.file, language), &design, &args.in_rooms, &mut watch);
+        return program::run(&args.program, (&args.file, language), &design, &args.in_rooms, &watch);
     }
-    let prove = |_| Written::new(&design, args.certificate_budget, &mut watch);
+    let prove = |_| Written::new(&design, args.certificate_budget, &watch);
     let certificate = args.certificate.as_ref().map(prove);
     watch.forget_interrupt();
     let judges = !args.period_only && matches!(args.form(), None | Some(Form::Json));
-    let rooms = judges.then(|| rooms::judged(&args.in_rooms, &spec, Some(&design), &mut watch)).transpose()?;
+    let rooms = judges.then(|| rooms::judged(&args.in_rooms, &spec, Some(&design), &watch)).transpose()?;
     let conditions = match args.form() {
-        Some(Form::Json) => rooms::conditions(&args.in_rooms, &design.spec, rooms.as_ref(), &mut watch)?,
+        Some(Form::Json) => rooms::conditions(&args.in_rooms, &design.spec, rooms.as_ref(), &watch)?,
         _ => vec![],
     };
     // A schedule file holds a table, and flow has none.
     let emits = !args.period_only && matches!(args.form(), Some(Form::Source(form)) if form != emit::Form::Toml);
-    let way = emits.then(|| rooms::recommended(&args.in_rooms, &spec, &design, &mut watch)).transpose()?;
+    let way = emits.then(|| rooms::recommended(&args.in_rooms, &spec, &design, &watch)).transpose()?;
     drop(watch);
     let best = rooms.as_ref().and_then(|rooms| rooms.as_ref().ok()?.judgement.best());
     let how = best.map(|best| design.spec.how(&best.way)).transpose();
@@ -336,7 +336,7 @@ fn settings(judged: &RoomWay) -> Option<Way> {
 /// Answers `--period`.
 fn fit(args: &Args, spec: &RingSpec, period: Micros) -> Result<Answer, InputError> {
     let began = Instant::now();
-    let mut watch = Watch::ending_after(args.time_limit.unwrap_or(Duration::MAX));
+    let watch = Watch::ending_after(args.time_limit.unwrap_or(Duration::MAX));
     let mut control = |progress: &Progress| watch.control_flow(|| format!("{} nodes", progress.nodes));
     let fit = spec
         .fit(period, args.budget.unwrap_or(BUDGET), &mut control)
@@ -368,7 +368,7 @@ fn fit(args: &Args, spec: &RingSpec, period: Micros) -> Result<Answer, InputErro
 /// Answers `--curve`.
 fn curve_of(args: &Args, spec: &RingSpec, need: Need) -> Result<Answer, InputError> {
     let began = Instant::now();
-    let mut watch = Watch::ending_after(args.time_limit.unwrap_or(Duration::MAX));
+    let watch = Watch::ending_after(args.time_limit.unwrap_or(Duration::MAX));
     let mut control = |progress: &Progress| watch.control_flow(|| format!("{} nodes of a point", progress.nodes));
     let atlas = if args.no_atlas { "" } else { ATLAS };
     let search = Effort { budget: args.budget.unwrap_or(CURVE_BUDGET), what_if: false, atlas };

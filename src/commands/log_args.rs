@@ -102,7 +102,7 @@ pub(crate) fn read_shown(
     options: &Options,
     mut each: impl FnMut(&Report, &LogReading),
 ) -> Result<Report, FileError> {
-    let (mut watch, mut count) = (Watch::unstoppable(), 0_u64);
+    let (watch, mut count) = (Watch::unstoppable(), 0_u64);
     read_log(file, options, |report, reading| {
         count += 1;
         if count.is_multiple_of(4096) {

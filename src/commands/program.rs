@@ -58,7 +58,7 @@ pub(crate) fn run(
     (file, language): (&Path, Language),
     design: &RingDesign,
     in_rooms: &RoomArgs,
-    watch: &mut Watch,
+    watch: &Watch,
 ) -> Result<Answer, InputError> {
     let bad = |why: String| InputError::new(file, why);
     let way = match args.way {

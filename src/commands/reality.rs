@@ -147,7 +147,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         let expected = format!("a time in which the ring fires, up to {MOST_PERIODS:.0} periods");
         return Err(InputError::new(&args.log, format!("firings within {seconds:.1} s; expected {expected}")));
     }
-    let mut watch = Watch::new();
+    let watch = Watch::new();
     let go_on = |done: f64| watch.go_on(|| format!("{:.0} % simulated", 100.0 * done));
     let simulated = simulate_while(&world, args.method, &Options::periods(periods as u32), go_on);
     let simulated = simulated.map_err(|error| InputError::new(&args.scene, error))?;

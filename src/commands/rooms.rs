@@ -2,7 +2,6 @@
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::sync::{Mutex, PoisonError};
 
 use eeruf_design::{CHOICE, RingDesign, RingSpec, RoomsAnswer, RoomsAsked, UnderCondition};
 use eeruf_files::{FileError, Kind};
@@ -68,21 +67,21 @@ impl RoomArgs {
 /// rooms, it prints every way in every kind of room; with `cost`, it prints the cost of each kind of way.
 pub(crate) fn study(args: &RoomArgs, file: &Path, as_json: bool, all: bool, cost: bool) -> Result<Answer, InputError> {
     let spec = read_ring(file)?;
-    let mut watch = Watch::new();
+    let watch = Watch::new();
     let design = spec.shortest_to_study().map_err(|error| InputError::new(file, error))?;
     let name = file.display().to_string();
     if as_json || all || cost || !args.rooms.is_empty() {
-        let mut judged = judged(args, &spec, design.as_ref(), &mut watch)?;
-        // Nothing appears in the user's own rooms.
+        let mut judged = judged(args, &spec, design.as_ref(), &watch)?;
+        // In rooms of the user's own nothing appears.
         if let Some(answer) = judged.as_mut().ok().filter(|_| cost && args.rooms.is_empty()) {
-            let (asked, watch) = (asked(args, &spec)?, Mutex::new(&mut watch));
-            answer.by_cost = spec.cost_in_rooms(design.as_ref(), &asked, &|share| goes_on(&watch, share)).ok();
+            answer.by_cost =
+                spec.cost_in_rooms(design.as_ref(), &asked(args, &spec)?, &|done| goes_on(&watch, done)).ok();
         }
         drop(watch);
         show(as_json, || RoomsOrNot::of(&judged), || describe(&name, &judged) + &describe_all(&judged))?;
         return Ok(if judged.is_ok() { Answer::Yes } else { Answer::No });
     }
-    match three_ways(args, &spec, design.as_ref(), &mut watch)? {
+    match three_ways(args, &spec, design.as_ref(), &watch)? {
         Ok(text) => tell(format!("{name}: {text}")).map(|()| Answer::Yes),
         Err(why) => tell(format!("{name}: not judged in rooms: {why}.\n")).map(|()| Answer::No),
     }
@@ -94,11 +93,10 @@ fn three_ways(
     args: &RoomArgs,
     spec: &RingSpec,
     design: Option<&RingDesign>,
-    watch: &mut Watch,
+    watch: &Watch,
 ) -> Result<Result<String, String>, InputError> {
     let asked = asked(args, spec)?;
-    let watch = Mutex::new(watch);
-    let found = spec.recommended_in_rooms(design, &asked, &|share| goes_on(&watch, share));
+    let found = spec.recommended_in_rooms(design, &asked, &|share| goes_on(watch, share));
     let robot = design.map_or(spec, |design| &design.spec).room_robot();
     let (best, robot) = match found.and_then(|best| Ok((best, robot?.robot))) {
         Ok((Some(best), robot)) => (best, robot),
@@ -116,7 +114,7 @@ fn three_ways(
     let measured = |first: u64| {
         let conditions = vec![Condition { moving, others: false }];
         let asked = MeasureAsked { conditions, first, places: asked.places, speeds };
-        measure(&ways, &asked, &|share| goes_on(&watch, share)).map_err(|error| error.to_string())
+        measure(&ways, &asked, &|share| goes_on(watch, share)).map_err(|error| error.to_string())
     };
     let both = measured(CHOICE).and_then(|chosen| Ok((chosen, measured(asked.first)?)));
     Ok(both.map(|(chosen, measured)| {
@@ -134,11 +132,9 @@ pub(crate) fn judged(
     args: &RoomArgs,
     spec: &RingSpec,
     design: Option<&RingDesign>,
-    watch: &mut Watch,
+    watch: &Watch,
 ) -> Result<Result<RoomsAnswer, String>, InputError> {
-    let asked = asked(args, spec)?;
-    let watch = Mutex::new(watch);
-    Ok(spec.judge_in_rooms(design, &asked, &|share| goes_on(&watch, share)))
+    Ok(spec.judge_in_rooms(design, &asked(args, spec)?, &|share| goes_on(watch, share)))
 }
 
 /// The figures of the recommended way where the ring is used; none in the user's own rooms, where nothing appears.
@@ -146,13 +142,11 @@ pub(crate) fn conditions(
     args: &RoomArgs,
     spec: &RingSpec,
     judged: Option<&Result<RoomsAnswer, String>>,
-    watch: &mut Watch,
+    watch: &Watch,
 ) -> Result<Vec<UnderCondition>, InputError> {
     let best = judged.and_then(|judged| judged.as_ref().ok()?.judgement.best());
     let Some(best) = best.filter(|_| args.rooms.is_empty()) else { return Ok(vec![]) };
-    let asked = asked(args, spec)?;
-    let watch = Mutex::new(watch);
-    Ok(spec.way_in_rooms(&best.way, &asked, &|share| goes_on(&watch, share)).unwrap_or_default())
+    Ok(spec.way_in_rooms(&best.way, &asked(args, spec)?, &|share| goes_on(watch, share)).unwrap_or_default())
 }
 
 /// The recommended way of firing a ring, by [`judged`]; or the reason why there is none.
@@ -160,11 +154,9 @@ pub(crate) fn recommended(
     args: &RoomArgs,
     spec: &RingSpec,
     design: &RingDesign,
-    watch: &mut Watch,
+    watch: &Watch,
 ) -> Result<Result<Option<RoomWay>, String>, InputError> {
-    let asked = asked(args, spec)?;
-    let watch = Mutex::new(watch);
-    Ok(spec.recommended_in_rooms(Some(design), &asked, &|share| goes_on(&watch, share)))
+    Ok(spec.recommended_in_rooms(Some(design), &asked(args, spec)?, &|share| goes_on(watch, share)))
 }
 
 fn asked(args: &RoomArgs, spec: &RingSpec) -> Result<RoomsAsked, InputError> {
@@ -181,8 +173,7 @@ fn asked(args: &RoomArgs, spec: &RingSpec) -> Result<RoomsAsked, InputError> {
     })
 }
 
-fn goes_on(watch: &Mutex<&mut Watch>, share: f64) -> bool {
-    let mut watch = watch.lock().unwrap_or_else(PoisonError::into_inner);
+fn goes_on(watch: &Watch, share: f64) -> bool {
     watch.go_on(|| format!("rooms: {:.0} % done", 100.0 * share))
 }
 

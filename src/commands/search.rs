@@ -64,11 +64,11 @@ enum Best {
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let spec = read_waits(&args.file)?;
-    let mut watch = Watch::ending_after(args.time_limit.unwrap_or(Duration::MAX));
+    let watch = Watch::ending_after(args.time_limit.unwrap_or(Duration::MAX));
     let found = match args.best {
-        _ if args.count => count(args, &spec, &mut watch),
-        Some(Best::Pareto) => front(args, &spec, &mut watch),
-        best => find(args, &spec, best, &mut watch),
+        _ if args.count => count(args, &spec, &watch),
+        Some(Best::Pareto) => front(args, &spec, &watch),
+        best => find(args, &spec, best, &watch),
     };
     drop(watch);
     let (answer, text) = found.map_err(|error| InputError::new(&args.file, error))?;
@@ -89,19 +89,19 @@ fn answer(found: bool, proven: bool) -> Answer {
     }
 }
 
-/// Searches up to this many nodes, unless the user ends the search.
-fn within<T>(nodes: u64, watch: &mut Watch, search: impl FnOnce(&mut Budget<'_>) -> T) -> T {
+/// Searches up to this many nodes, unless the user ends it.
+fn within<T>(nodes: u64, watch: &Watch, search: impl FnOnce(&mut Budget<'_>) -> T) -> T {
     let mut watcher = |progress: &Progress| watch.control_flow(|| format!("{} nodes", progress.nodes));
     search(&mut Budget::nodes_at_most(nodes).watched(WATCHED_EVERY, &mut watcher))
 }
 
 /// Returns the reason why there is no table, in a line.
-fn why_none(search: &WaitSearch, memory: &mut [u32], watch: &mut Watch) -> Result<String, SearchError> {
+fn why_none(search: &WaitSearch, memory: &mut [u32], watch: &Watch) -> Result<String, SearchError> {
     Ok(format!("{}\n", within(REASON_BUDGET, watch, |budget| search.why_none(memory, budget))?))
 }
 
 /// Counts the tables and prints the number.
-fn count(args: &Args, spec: &WaitSpec, watch: &mut Watch) -> Result<(Answer, String), SearchError> {
+fn count(args: &Args, spec: &WaitSpec, watch: &Watch) -> Result<(Answer, String), SearchError> {
     let search = WaitSearch::new(&spec.problem())?;
     let began = Instant::now();
     let ((outcome, count), nodes) =
@@ -123,7 +123,7 @@ fn count(args: &Args, spec: &WaitSpec, watch: &mut Watch) -> Result<(Answer, Str
 }
 
 /// Finds one table, or the best, and prints it.
-fn find(args: &Args, spec: &WaitSpec, best: Option<Best>, watch: &mut Watch) -> Result<(Answer, String), SearchError> {
+fn find(args: &Args, spec: &WaitSpec, best: Option<Best>, watch: &Watch) -> Result<(Answer, String), SearchError> {
     let search = WaitSearch::new(&spec.problem())?;
     let began = Instant::now();
     let mut memory = vec![0; memory_words(spec.problem().sensors)];
@@ -152,7 +152,7 @@ fn find(args: &Args, spec: &WaitSpec, best: Option<Best>, watch: &mut Watch) -> 
 }
 
 /// Follows the Pareto front of interval and `t_delta`, and prints its tables.
-fn front(args: &Args, spec: &WaitSpec, watch: &mut Watch) -> Result<(Answer, String), SearchError> {
+fn front(args: &Args, spec: &WaitSpec, watch: &Watch) -> Result<(Answer, String), SearchError> {
     let search = WaitSearch::new(&spec.problem())?;
     let began = Instant::now();
     let mut memory = vec![0; memory_words(spec.problem().sensors)];

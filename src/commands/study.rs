@@ -135,10 +135,10 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let has_tables = args.all || args.periods.is_some() || !args.methods.is_empty();
     let draws = args.svg.is_some() || args.png.is_some();
     let simulates = has_tables || draws || args.json || args.mcap.is_some();
-    let mut watch = Watch::new();
+    let watch = Watch::new();
     let mut text = String::new();
     if args.methods.is_empty() && !args.json {
-        text = three_ways(args, &world, &mut watch)?;
+        text = three_ways(args, &world, &watch)?;
     }
     if !simulates {
         tell(text + MORE)?;
@@ -178,18 +178,14 @@ const TRIALS: u64 = 60;
 const TRIALS_IF_MOVING: u64 = 20;
 
 /// Writes the first answer: how soon the first robot sees what appears, and how often it stops for nothing.
-fn three_ways(args: &Args, world: &World, watch: &mut Watch) -> Result<String, InputError> {
+fn three_ways(args: &Args, world: &World, watch: &Watch) -> Result<String, InputError> {
     let methods = [Method::Blocking, Method::Sequential, Method::InTurn].map(|method| (Family::OneByOne, method));
     let methods = [&methods[..], &[(Family::Flow, Method::Flow)]].concat();
-    let watch = Mutex::new(watch);
-    // Different objects for each seed.
+    // Other things for each seed.
     let trials = if world.moves() { TRIALS_IF_MOVING } else { TRIALS };
     let first = (args.seed.unwrap_or(world.seed()) % (1 << 32)) * 2 * trials;
     let measured = |first: u64, part: f64| {
-        let goes_on = |share: f64| {
-            let mut watch = watch.lock().unwrap_or_else(PoisonError::into_inner);
-            watch.go_on(|| format!("three ways, {:.0} % done", 50.0 * (part + share)))
-        };
+        let goes_on = |share: f64| watch.go_on(|| format!("three ways, {:.0} % done", 50.0 * (part + share)));
         measure_in_scene(world, &methods, first..first + trials, &goes_on)
             .map_err(|error| InputError::new(&args.file, error))
     };
@@ -202,7 +198,7 @@ fn three_ways(args: &Args, world: &World, watch: &mut Watch) -> Result<String, I
     Ok(title + &three.describe() + "For your ring: `eeruf design RING.toml --program arduino` (or c, rust, ..).\n")
 }
 
-fn study(args: &Args, world: &World, mut watch: Watch) -> Result<Study, InputError> {
+fn study(args: &Args, world: &World, watch: Watch) -> Result<Study, InputError> {
     let sketched = world.robots().iter().any(|robot| robot.firing != Sketch::default());
     let methods = chosen(&args.methods, sketched);
     let bad = |error: &dyn std::fmt::Display| InputError::new(&args.file, error);
@@ -219,12 +215,11 @@ fn study(args: &Args, world: &World, mut watch: Watch) -> Result<Study, InputErr
     let seed = args.seed.unwrap_or(world.seed());
     let options =
         Options { seed: Some(seed), best: best.as_ref().map(|best| best.schedule), ..Options::periods(periods) };
-    let shared = Mutex::new((watch, vec![0.0; methods.len()]));
+    let shares = Mutex::new(vec![0.0; methods.len()]);
     let jobs: Vec<_> = methods.iter().copied().enumerate().collect();
     let results = sweep(&jobs, |&(index, method)| {
         let readings = simulate_while(world, method, &options, |share| {
-            let mut shared = shared.lock().unwrap_or_else(PoisonError::into_inner);
-            let (watch, shares) = &mut *shared;
+            let mut shares = shares.lock().unwrap_or_else(PoisonError::into_inner);
             shares[index] = share;
             let done = shares.iter().sum::<f64>() / shares.len() as f64;
             watch.go_on(|| format!("{periods} periods of {} methods, {:.0} % done", shares.len(), 100.0 * done))

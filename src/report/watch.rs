@@ -4,7 +4,9 @@
 use std::io::IsTerminal as _;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Arc, OnceLock};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, PoisonError};
+use std::thread;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
@@ -14,9 +16,11 @@ use crate::console::{note, settings};
 /// Time after which the progress line appears.
 const SHOWN_AFTER: Duration = Duration::from_secs(2);
 
-/// Time after which a task without a terminal prints its progress, and then once a minute.
-const SAID_AFTER: Duration = Duration::from_secs(20);
-const SAID_EVERY: Duration = Duration::from_secs(60);
+/// Time after which a command without a terminal prints its progress, and the time between two such lines.
+const SAID: [Duration; 2] = [Duration::from_secs(20), Duration::from_secs(60)];
+
+/// The progress of the task under way, after a colon; empty if it reports none.
+static PROGRESS: Mutex<String> = Mutex::new(String::new());
 
 /// True if Ctrl-C was pressed since [`begin`].
 static STOPPED: AtomicBool = AtomicBool::new(false);
@@ -28,6 +32,29 @@ static NEVER: AtomicBool = AtomicBool::new(false);
 pub(crate) fn begin() {
     STOPPED.store(false, Ordering::Relaxed);
     interrupted().store(false, Ordering::Relaxed);
+}
+
+/// Prints progress without a terminal until the result is dropped, also that of commands that have no [`Watch`].
+pub(crate) fn said() -> Sender<()> {
+    let (running, ended) = channel();
+    if !settings().quiet && !std::io::stderr().is_terminal() {
+        // Where no thread can be started, nothing is printed.
+        _ = thread::Builder::new().spawn(move || say(&ended, SAID));
+    }
+    running
+}
+
+/// Says the progress after the first time, and again after each further one, until the sender is dropped.
+fn say(ended: &Receiver<()>, [mut pause, every]: [Duration; 2]) {
+    let began = Instant::now();
+    while ended.recv_timeout(pause) == Err(RecvTimeoutError::Timeout) {
+        pause = every;
+        note(format!("eeruf: at work for {} s{}", began.elapsed().as_secs(), progress()));
+    }
+}
+
+fn progress() -> MutexGuard<'static, String> {
+    PROGRESS.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Returns true if Ctrl-C ended a task.
@@ -54,9 +81,7 @@ fn interrupted() -> &'static AtomicBool {
 pub(crate) struct Watch {
     began: Instant,
     limit: Duration,
-    bar: Option<ProgressBar>,
-    /// Time of the next line without a terminal.
-    says_at: Duration,
+    bar: OnceLock<ProgressBar>,
     interrupted: &'static AtomicBool,
 }
 
@@ -67,13 +92,12 @@ impl Watch {
 
     /// Makes a watch that ends the task after this time.
     pub(crate) fn ending_after(limit: Duration) -> Self {
-        Self { began: Instant::now(), limit, bar: None, says_at: SAID_AFTER, interrupted: interrupted() }
+        Self { began: Instant::now(), limit, bar: OnceLock::new(), interrupted: interrupted() }
     }
 
     /// Makes a watch that never ends the task and only shows progress.
     pub(crate) fn unstoppable() -> Self {
-        let (began, limit) = (Instant::now(), Duration::MAX);
-        Self { began, limit, bar: None, says_at: SAID_AFTER, interrupted: &NEVER }
+        Self { began: Instant::now(), limit: Duration::MAX, bar: OnceLock::new(), interrupted: &NEVER }
     }
 
     /// Forgets a Ctrl-C that ended one task before the next one begins. The time limit covers all tasks.
@@ -82,20 +106,17 @@ impl Watch {
     }
 
     /// Shows the progress; `false` if the task should stop.
-    pub(crate) fn go_on(&mut self, how_far: impl FnOnce() -> String) -> bool {
+    pub(crate) fn go_on(&self, how_far: impl FnOnce() -> String) -> bool {
         let elapsed = self.began.elapsed();
         if self.interrupted.load(Ordering::Relaxed) || elapsed >= self.limit {
             return false;
         }
         if !std::io::stderr().is_terminal() {
-            if elapsed >= self.says_at && !settings().quiet {
-                self.says_at = elapsed + SAID_EVERY;
-                note(format!("eeruf: at work for {} s: {}", elapsed.as_secs(), how_far()));
-            }
+            *progress() = format!(": {}", how_far());
             return true;
         }
         if elapsed >= SHOWN_AFTER {
-            let bar = self.bar.get_or_insert_with(|| {
+            let bar = self.bar.get_or_init(|| {
                 let bar = ProgressBar::new_spinner();
                 if let Ok(style) = ProgressStyle::with_template("{spinner} {msg} ({elapsed}, Ctrl-C stops)") {
                     bar.set_style(style);
@@ -110,19 +131,19 @@ impl Watch {
 
     /// Returns a function that tells whether a task should continue, for a task that reports no progress.
     pub(crate) fn asked(self, how_far: impl Fn() -> String) -> impl Fn() -> bool {
-        let watch = std::cell::RefCell::new(self);
-        move || watch.borrow_mut().go_on(&how_far)
+        move || self.go_on(&how_far)
     }
 
-    /// Answers like [`go_on`](Self::go_on), in the form that a search needs.
-    pub(crate) fn control_flow(&mut self, how_far: impl FnOnce() -> String) -> ControlFlow<()> {
+    /// Answers like [`go_on`](Self::go_on), in the form that a search asks for.
+    pub(crate) fn control_flow(&self, how_far: impl FnOnce() -> String) -> ControlFlow<()> {
         if self.go_on(how_far) { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     }
 }
 
 impl Drop for Watch {
     fn drop(&mut self) {
-        if let Some(bar) = &self.bar {
+        progress().clear();
+        if let Some(bar) = self.bar.get() {
             bar.finish_and_clear();
         }
     }

@@ -98,3 +98,20 @@ fn short_help_of_each_verb_is_one_screen() {
         assert!(lines > 10 && lines <= 48 && help.lines().all(|line| line.chars().count() <= 80), "{lines}\n{help}");
     }
 }
+
+// After 20 s a line on standard error says so, also where a command waits for its file; and how far the work is.
+#[test]
+#[cfg(unix)]
+fn long_work_is_said_without_a_terminal() {
+    let folder = tempfile::tempdir().unwrap();
+    let files = "lab paths, lab scene, lab merge, lab search, lab atlas, study, design --all, verify, logs, diagnose";
+    let mut all: Vec<_> = files.split(", ").map(|words| format!("{words} pipe")).collect();
+    all.push("lab experiment set-one --seeds 100000 --method eeruf".to_owned());
+    let runs = all.iter().enumerate().map(|(n, words)| format!("timeout 30 eeruf {words} > out-{n} 2> {n} &\n"));
+    crate::newcomers::shell(&format!("mkfifo pipe; {} wait", runs.collect::<String>()), folder.path());
+    for (n, words) in all.iter().enumerate() {
+        let said = std::fs::read_to_string(folder.path().join(n.to_string())).unwrap();
+        let how_far = if words.contains("set-one") { ": 100000 alcoves by 1 methods, " } else { "\n" };
+        assert!(said.starts_with("eeruf: at work for 20 s") && said.contains(how_far), "{words}: {said}");
+    }
+}

@@ -2,7 +2,6 @@
 
 use std::fmt;
 use std::path::PathBuf;
-use std::sync::{Mutex, PoisonError};
 
 use eeruf_core::search::Progress;
 use eeruf_sim::experiments::{ExperimentError, FIRST};
@@ -37,7 +36,7 @@ pub(crate) struct Common {
     /// Growth of the receivers' gain: constant, square_root, linear, stepped or polaroid_6500
     #[arg(long, value_name = "GAIN", default_value = "constant", value_parser = gain)]
     pub(crate) gain: GainProfile,
-    /// Run part I of N, and print it for `eeruf lab merge`; by default all
+    /// Run the I-th of N parts, and print what `eeruf lab merge` makes the whole of; by default all
     #[arg(long, value_name = "I/N", conflicts_with_all = ["json", "svg", "png"])]
     pub(crate) shard: Option<Shard>,
     /// Print one JSON object
@@ -111,11 +110,8 @@ pub(crate) fn bad(set: &'static str) -> impl Fn(&dyn fmt::Display) -> InputError
 
 /// Watches a run of several threads.
 pub(crate) fn watched(what: String) -> impl Fn(f64) -> bool + Sync {
-    let watch = Mutex::new(Watch::new());
-    move |done| {
-        let mut watch = watch.lock().unwrap_or_else(PoisonError::into_inner);
-        watch.go_on(|| format!("{what}, {:.0} % done", 100.0 * done))
-    }
+    let watch = Watch::new();
+    move |done| watch.go_on(|| format!("{what}, {:.0} % done", 100.0 * done))
 }
 
 /// A function called occasionally with the finished share, 0 to 1.

@@ -85,7 +85,7 @@ fn options(args: &Args) -> Result<SetOneOptions, InputError> {
         ..SetOneOptions::default()
     };
     options.seeds = args.common.seeds.unwrap_or(options.seeds);
-    let mut watch = Watch::new();
+    let watch = Watch::new();
     let robot = Robot { period: options.period, ..Alcove::random(0).robot_of(options.sensors) };
     let best = best_schedule_for(&robot, BUDGET, |progress| watch.go_on(|| designing(progress)));
     options.best = Some(best.map_err(|error| bad("set-one")(&error))?);

@@ -173,7 +173,7 @@ fn options(args: &Args) -> Result<SetTwoOptions, InputError> {
         options.methods = Entry::all(chosen(&args.methods, false));
     }
     if options.methods.iter().any(|entry| entry.method() == Method::EerufBest) {
-        let mut watch = Watch::new();
+        let watch = Watch::new();
         let robot = Robot { t_delta: options.t_delta, ..Course::random(0).robot() };
         let best = best_schedule_for(&robot, BUDGET, |progress| watch.go_on(|| designing(progress)));
         options.best = Some(best.map_err(|error| bad("set-two")(&error))?);

@@ -129,8 +129,17 @@ fn pictures_are_drawn_and_say_what_they_show() {
     assert!(outcome.out.contains("5 pictures in "), "{}", outcome.out);
     let picture = |name: &str| std::fs::read_to_string(made.join(name)).unwrap();
     for (name, says) in [
-        ("scene.svg", vec!["conventional", "flow", "sound sent by sensor", "wrong readings believed", " m\n"]),
-        ("timing.svg", vec!["flow: two periods as they happened", "crosstalk, rejected", "time, ms"]),
+        (
+            "scene.svg",
+            vec![
+                "conventional: who fools whom",
+                "flow: who",
+                "sound sent by sensor",
+                "wrong readings believed",
+                " m\n",
+            ],
+        ),
+        ("timing.svg", vec!["flow: two rounds as they happened", "crosstalk, rejected", "time, ms"]),
         ("readings.svg", vec!["What sensor ", "range, m", "time, s", "rejected", "upper edge"]),
         ("methods.svg", [&methods()[..], &["good lost", "readings a second"]].concat()),
         ("blind.svg", [&methods()[..], &["Blind sensors (red)", "flow is the way recommended"]].concat()),

@@ -1,6 +1,6 @@
-//! Two periods as they happened: who fired when, who heard what, and whose sound it was (Fig. 3).
+//! Two periods, or rounds, as they happened: who fired when, who heard what, and whose sound it was (Fig. 3).
 
-use eeruf_sim::{Cause, Readings};
+use eeruf_sim::{Cause, Method, Readings};
 use plotters::style::Color;
 use plotters::style::text_anchor::HPos;
 
@@ -28,7 +28,9 @@ pub(crate) fn two_periods(readings: &Readings, robot: u16, sensors: usize, windo
     let lane = |sensor: usize| TOP + LANE * (sensor as f64 + 0.5);
     let bottom = TOP + LANE * sensors as f64;
     let mut picture = Picture::new(WIDTH, bottom + 48.0);
-    picture.text(format!("{}: two periods as they happened", readings.method), (16.0, 20.0), TITLE);
+    // Flow has no period: the simulator counts its rounds, in which each sensor fires once.
+    let turn = if readings.method == Method::Flow { "round" } else { "period" };
+    picture.text(format!("{}: two {turn}s as they happened", readings.method), (16.0, 20.0), TITLE);
     legend(&mut picture);
     let step = grid_step(1000.0 * length, 12.0);
     for tick in 0..=(1000.0 * length / step) as u32 {
@@ -38,13 +40,14 @@ pub(crate) fn two_periods(readings: &Readings, robot: u16, sensors: usize, windo
         picture.text_in(tick_label(ms, step), (x, bottom + 14.0), SMALL, HPos::Center, INK);
     }
     picture.text_in("time, ms", (WIDTH - RIGHT, bottom + 32.0), SMALL, HPos::Right, INK);
-    for (period, name) in [(first, "one period"), (first + 1, "the next")] {
+    for (period, name) in [(first, &*format!("one {turn}")), (first + 1, "the next")] {
         let x = x_of(fired(period));
         if x.is_finite() {
             picture.dashes((x, TOP - 18.0), (x, bottom), 1.0, INK.mix(0.6));
             picture.text(name, (x + 6.0, TOP - 14.0), CAPTION);
         }
     }
+    picture.text_in("sensor", (LEFT - 4.0, TOP - 14.0), SMALL, HPos::Right, INK);
     for sensor in 0..sensors {
         picture.text_in((sensor + 1).to_string(), (LEFT - 14.0, lane(sensor)), CAPTION, HPos::Right, INK);
     }

@@ -45,7 +45,7 @@ pub(crate) fn pictures(folder: &Path, ending: &str, world: &World, study: &Study
 /// Draws what each method reads into this file.
 pub(crate) fn comparison(study: &Study, file: &Path) -> Result<(), InputError> {
     let summaries: Vec<Summary> = study.runs.iter().map(Readings::summary).collect();
-    draw::methods_chart("Firing methods in the same scene, on the same seed", &summaries).save(file)
+    draw::methods_chart(&summaries).save(file)
 }
 
 /// Returns the share of each sensor's firings that were right and believed.
@@ -80,7 +80,7 @@ fn panel(world: &World, readings: &Readings) -> Panel {
     let accepted = (0..readings.len()).filter(|&reading| readings.is_accepted(reading)).count();
     let share = 100.0 * times as f64 / accepted.max(1) as f64;
     Panel {
-        title: readings.method.to_string(),
+        title: format!("{}: who fools whom", readings.method),
         caption: format!("crosstalk in {share:.1} % of what it believes ({times} of {accepted})"),
         paths,
     }

@@ -108,7 +108,7 @@ impl Board {
     /// Describes the wires, line by line.
     pub(crate) fn in_words(self, Wiring { triggers, echoes }: &Wiring) -> Vec<String> {
         let mut lines = vec![format!(
-            "Wires to the pins of this board ({}); for others change the lists of pins below:",
+            "Wires to this board ({}), besides supply and ground; for other pins change the lists below:",
             self.title()
         )];
         for (module, (&trigger, &echo)) in (1..).zip(triggers.iter().zip(echoes)) {

@@ -148,7 +148,7 @@ impl Wanted<'_> {
         let spec = &self.design.spec;
         let modules = spec.modules.first().map_or("", |module| module.name);
         let turns = flow.map_or(TurnSettings::new(1), |flow| flow.turns);
-        let mut lines = vec![format!("{} modules {modules}, of {}:", spec.sensors, self.file.0)];
+        let mut lines = vec![format!("{} {modules} modules, from {}:", spec.sensors, self.file.0)];
         lines.extend(wrapped(&self.way.in_words(&turns)));
         if let Some((board, wiring)) = wiring {
             lines.push(String::new());
@@ -205,10 +205,10 @@ fn list(pins: &[u8]) -> String {
 
 /// Writes the first lines of a program that prints.
 fn printing(about: &[String], has_dice: bool) -> Vec<String> {
-    let seed = if has_dice { "the seed of the robot's dice, then " } else { "" };
+    let seed = if has_dice { "the seed of its random gaps, then " } else { "" };
     let prints = format!(
-        "Prints {seed}for each reading that counts the number of the module and the distance in millimetres, or \
-         `free`. A module that has neither is not known: it is not free."
+        "Prints, at 115200 baud, {seed}for each reading that counts the number of the module and the distance in millimetres, or \
+         `free`. A module that has neither is unknown, which is not free."
     );
     [about, &[String::new()], &wrapped(&prints)].concat()
 }
@@ -398,7 +398,7 @@ fn rust(wanted: &Wanted<'_>, flow: Option<&FlowDesign>, times: PulseTimes, about
     ];
     Program {
         files: files.into_iter().map(|(name, text)| (name.to_owned(), text)).collect(),
-        next: "depend on this crate from your firmware, and call `sonar` with its pins",
+        next: "in its Cargo.toml name your clone of eeruf; depend on it from your firmware, and call `sonar` with its pins",
     }
 }
 

@@ -121,7 +121,8 @@ pub(crate) fn describe(error: &clap::Error, words: &[String]) -> InputError {
         (ErrorKind::UnknownArgument, _) => unknown(thing, suggested, words, &command),
         (ErrorKind::MissingRequiredArgument, _) => {
             let usage = if kind.is_empty() { thing.clone() } else { format!("{thing} {}", bare(kind)) };
-            (thing, format!("missing; expected `{path} .. {usage}`"))
+            let others = if thing.starts_with('-') { " .." } else { "" };
+            (thing, format!("missing; expected `{path}{others} {usage}`"))
         }
         (ErrorKind::ArgumentConflict, _) => {
             let found = match context(ContextKind::PriorArg) {
@@ -209,7 +210,7 @@ fn expected(why: &str) -> String {
         return format!("expected a number from {}", range.replace("..=", " to "));
     }
     if why.contains("invalid digit") || why.contains("cannot parse") {
-        return "expected a whole number from 0 on".to_owned();
+        return "expected a whole number from 0 on, in digits".to_owned();
     }
     if why.contains("too large") {
         return "expected a smaller number".to_owned();

@@ -13,7 +13,7 @@ use super::{Answer, diagnose as by_schedule, replay, survey};
 use crate::console::{print_line, tell};
 use crate::files::error::InputError;
 use crate::report::json::to_json;
-use crate::report::table::markdown;
+use crate::report::table::{counted, markdown};
 use crate::report::watch::Watch;
 
 /// Find out whether a log's sensors read each other's sound, which ones, what to do, and why.
@@ -180,8 +180,8 @@ fn json(report: &Report, sensors: &[Sensor], found: &Examination) -> Value {
 
 /// Describes how the log was read.
 fn describe(file: &Path, report: &Report, sensors: &[Sensor]) -> String {
-    let (count, file) = (sensors.len(), file.display());
-    let mut text = format!("{file}: {}, {count} sensor{}\n", report.form, if count == 1 { "" } else { "s" });
+    let (count, file) = (counted(sensors.len(), "sensor"), file.display());
+    let mut text = format!("{file}: {}, {count}\n", report.form);
     let metres = |range: Option<f64>| range.map_or("-".to_owned(), |range| format!("{range:.3}"));
     let rows = sensors.iter().map(|sensor| {
         let counts = [sensor.readings, sensor.echoes, sensor.no_echo].map(|count| count.to_string());

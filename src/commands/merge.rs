@@ -13,7 +13,7 @@ use super::experiment::{Part, Shard, merged};
 use super::{Cli, LabVerb, Verb};
 use crate::files::error::InputError;
 
-/// Join the parts that `eeruf lab experiment --shard` printed into the undivided run, bit for bit.
+/// Join the parts that `eeruf lab experiment --shard` printed: bit for bit the undivided run.
 #[derive(clap::Args)]
 pub(crate) struct Args {
     /// The parts, in any order
@@ -38,7 +38,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
                 }
                 Category::Syntax | Category::Io => "no JSON".to_owned(),
             };
-            let message = format!("{why}; expected what `eeruf experiment .. --shard I/N` prints, whole");
+            let message = format!("{why}; expected what `eeruf lab experiment .. --shard I/N` prints, whole");
             FileError::new(file, message).at_line(Some(line))
         })?;
         if part.eeruf != Part::VERSION {
@@ -66,7 +66,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let missing: Vec<_> = (1..=first.shard.of).filter(|part| !parts.contains_key(part)).collect();
     if let Some(&next) = missing.first() {
         let (count, of) = (missing.len(), first.shard.of);
-        let again = format!("eeruf experiment {} --shard {next}/{of}", first.arguments.join(" "));
+        let again = format!("eeruf lab experiment {} --shard {next}/{of}", first.arguments.join(" "));
         return Err(refused(format!("{count} of {of} parts are missing, the first is {next}; run `{again}`")));
     }
     let words = ["eeruf", "experiment"].into_iter().chain(first.arguments.iter().map(String::as_str));
@@ -74,7 +74,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let whole = Cli::try_parse_from(words.chain(json)).ok().map(|cli| cli.verb);
     let Some(Verb::Old(LabVerb::Experiment(whole))) = whole else {
         let words = first.arguments.join(" ");
-        return Err(refused(format!("arguments `{words}`; expected those of `eeruf experiment`, unchanged")));
+        return Err(refused(format!("arguments `{words}`; expected those of `eeruf lab experiment`, unchanged")));
     };
     let mut runs = BTreeMap::new();
     for (_, part) in parts.values() {

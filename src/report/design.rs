@@ -8,7 +8,7 @@ use eeruf_design::{RingDesign, RingSpec, ToSpare, WhatIf};
 use eeruf_files::emit::Emit as _;
 use eeruf_sim::AnySchedule;
 
-use super::table::plain;
+use super::table::{counted, plain};
 use super::timing;
 
 pub(crate) fn describe(name: &str, spec: &RingSpec, design: &RingDesign, seconds: f64) -> String {
@@ -102,7 +102,7 @@ pub(crate) fn describe(name: &str, spec: &RingSpec, design: &RingDesign, seconds
     };
     table.add_row(["search".to_owned(), format!("{:.1} ms", 1000.0 * seconds), from]);
 
-    let mut text = format!("{name}: {} sensors, {}\n{table}\n", spec.sensors, requirements.layout);
+    let mut text = format!("{name}: {}, {}\n{table}\n", counted(spec.sensors, "sensor"), requirements.layout);
     text += &not_neighbours(spec);
     _ = writeln!(text, "\nNot shorter because of {}.", design.reason);
     if !what_if.is_empty() {
@@ -125,9 +125,9 @@ fn not_neighbours(spec: &RingSpec) -> String {
         pairs.iter().take(NAMED).map(|(x, y)| format!("{} and {}", x + 1, y + 1)).collect::<Vec<_>>().join(", ");
     let more = if pairs.len() > NAMED { ", .." } else { "" };
     let range_m = f64::from(spec.c.distance_mm(spec.min_interval)) / 1000.0;
-    let (count, plural) = (pairs.len(), if pairs.len() == 1 { "" } else { "s" });
+    let pairs = counted(pairs.len(), "pair");
     format!(
-        "\nFrom their places {count} pair{plural} of {} adjacent sensors hear nothing of each other off walls up to \
+        "\nFrom their places {pairs} of {} adjacent sensors hear nothing of each other off walls up to \
          {range_m:.2} m, and may fire close together: {named}{more}.\n",
         spec.neighbours
     )
@@ -182,5 +182,6 @@ fn papers_period_us(spec: &RingSpec, requirements: &Requirements<'_>) -> Option<
     if let Some(interval) = report.min_interval() {
         scale = scale.max(ratio(requirements.min_interval, interval.value));
     }
-    Some(scale * f64::from(TABLE_I_D.period().as_micros()))
+    // Where all are neighbours, no scale keeps the table's interval of 0.
+    Some(scale * f64::from(TABLE_I_D.period().as_micros())).filter(|us| us.is_finite())
 }

@@ -6,7 +6,7 @@ use eeruf_design::{CurvePoint, Fit, FoundJson, Need, RingSpec};
 use eeruf_files::emit::Emit as _;
 use serde::Serialize;
 
-use super::table::plain;
+use super::table::{counted, plain};
 use super::timing;
 
 /// Output of `--curve --json`.
@@ -73,7 +73,7 @@ pub(crate) fn describe_fit(name: &str, spec: &RingSpec, period: Micros, fit: &Fi
         table.add_row(["t_delta", &t_delta.to_string(), &format!("{whose}needed: {}; {most}", fit.spec.t_delta)]);
     }
     table.add_row(["search", &format!("{:.1} ms", 1000.0 * seconds), &format!("{} nodes", fit.nodes)]);
-    let mut text = format!("{name}: {} sensors, {}\n{table}\n", spec.sensors, requirements.layout);
+    let mut text = format!("{name}: {}, {}\n{table}\n", counted(spec.sensors, "sensor"), requirements.layout);
     if let Some(schedule) = &fit.schedule {
         text += &format!("\n{}\n{}\n", timing::diagram(schedule, requirements), schedule.to_toml());
     }

@@ -21,6 +21,11 @@ pub(crate) fn plain() -> Table {
     table
 }
 
+/// Formats a count of things.
+pub(crate) fn counted(count: usize, thing: &str) -> String {
+    format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
+}
+
 /// Formats a figure, or a dash if there is none.
 pub(crate) fn or_dash<T>(figure: Option<T>, in_words: impl FnOnce(T) -> String) -> String {
     figure.map_or_else(|| "-".to_owned(), in_words)

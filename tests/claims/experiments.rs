@@ -93,7 +93,7 @@ fn merged_parts_equal_the_whole_run() {
         let missing = eeruf(&["merge", files[0], files[1]]);
         assert_eq!(missing.code, Some(2));
         assert!(
-            missing.err.contains("1 of 3 parts are missing, the first is 1; run `eeruf experiment set-"),
+            missing.err.contains("1 of 3 parts are missing, the first is 1; run `eeruf lab experiment set-"),
             "{}",
             missing.err
         );
@@ -130,7 +130,7 @@ fn merge_refuses_parts_that_do_not_belong_together() {
         let says = if name == "old" {
             "a part of eeruf 0.0.1-"
         } else {
-            "expected what `eeruf experiment .. --shard I/N` prints"
+            "expected what `eeruf lab experiment .. --shard I/N` prints"
         };
         refused(&[file.to_str().unwrap()], says);
     }

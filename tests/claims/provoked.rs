@@ -159,7 +159,7 @@ const REFUSED_FILES: [Spoilt<'static>; 46] = [
 /// Wrong arguments and wrong files.
 const REFUSED_RUNS: [(&[&str], &str); 95] = [
     (&["desing", "ring.toml"], "desing: no command; did you mean `design`?; see `eeruf --help`"),
-    (&["design"], "RING.toml: missing; expected `eeruf design .. RING.toml`"),
+    (&["design"], "RING.toml: missing; expected `eeruf design RING.toml`"),
     (&["verify"], "SCHEDULE.toml: missing; expected `eeruf verify"),
     (&["replay", "log.csv"], "--t-delta-us: missing; expected `eeruf replay .. --t-delta-us US`"),
     (&["design", "ring.toml", "ring.toml"], "ring.toml: one argument too many; expected one file"),
@@ -232,8 +232,8 @@ const REFUSED_RUNS: [(&[&str], &str); 95] = [
         &["experiment", "set-one", "--period-us", "1"],
         "expected a number from 45000 to 1000000; see `eeruf experiment set-one",
     ),
-    (&["merge"], "FILE: missing; expected `eeruf merge .. FILE`"),
-    (&["merge", "log.csv"], "log.csv, line 1: no JSON; expected what `eeruf experiment .. --shard I/N` prints"),
+    (&["merge"], "FILE: missing; expected `eeruf merge FILE`"),
+    (&["merge", "log.csv"], "log.csv, line 1: no JSON; expected what `eeruf lab experiment .. --shard I/N` prints"),
     (&["atlas", "ring.toml", "--most-sensors", "2"], "ring.toml: no row of an atlas; expected a file that"),
     (
         &["scene", "ring.toml"],

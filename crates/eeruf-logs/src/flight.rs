@@ -100,7 +100,7 @@ pub(crate) fn read(flight: Flight, input: &mut dyn Read, file: &Path, sink: &mut
     let (topic, found) = (flight.message().to_owned(), sink.report.sensors.len());
     let why = "of lasers, radars and infrared light".to_owned();
     sink.report.skipped.extend((other > 0).then(|| Skipped { topic: topic.clone(), why, messages: other }));
-    let why = format!("{}, which holds none", flight.name());
+    let why = format!("no such message in {}", flight.name());
     sink.report.skipped.extend((found == 0 && other == 0).then_some(Skipped { topic, why, messages: 0 }));
     Ok(())
 }

@@ -9,15 +9,15 @@ use eeruf_sim::{Readings, Summary, World};
 use super::fooled::Fooled;
 use super::found::{Study, TOLERANCE_US, of_robot};
 use crate::report::percent::fine_percent;
-use crate::report::table::markdown;
+use crate::report::table::{counted, markdown};
 
 pub(crate) fn describe(file: &Path, world: &World, study: &Study) -> String {
     let scene = world.scene();
     let mut text = format!(
-        "{}: {} walls, {} poles, sound followed for up to {} bounces; seed {}\n",
+        "{}: {}, {}, sound followed for up to {} bounces; seed {}\n",
         file.display(),
-        scene.walls().len(),
-        scene.poles().len(),
+        counted(scene.walls().len(), "wall"),
+        counted(scene.poles().len(), "pole"),
         world.max_order(),
         study.seed
     );

@@ -15,7 +15,7 @@ pub(super) fn scene(source: &Source, file: &WorldFile) -> Result<Scene, FileErro
     for (index, entry) in file.walls.iter().enumerate() {
         let wall = entry.get_ref();
         if wall.points_m.len() < 2 {
-            let message = format!("points_m has {} points; expected at least 2", wall.points_m.len());
+            let message = format!("points_m has {}; expected at least 2 points", wall.points_m.len());
             return Err(source.error(Some(entry.span()), "points_m", message));
         }
         let mut corners = wall.points_m.clone();

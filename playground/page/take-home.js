@@ -23,10 +23,10 @@ const FORMS = [
 const USES = new Map([
   ["rust", "A constant that the compiler checks, for the crate eeruf-core."],
   ["c", "A C99 header that includes nothing but <stdint.h>; after eeruf.h, also the schedule for its ring."],
-  ["arduino", "For the Arduino library Eeruf: add it as a tab, and give RING to an EerufSonar."],
+  ["arduino", "A tab for the library Eeruf: give RING to an EerufSonar. For a whole sketch take the form Ring."],
   ["python", "For the package eeruf: it verifies the schedule again."],
   ["schedule", "For the program: eeruf verify schedule.toml --t-delta-us N, and for a robot in a scene file."],
-  ["ring", "For the program: eeruf design ring.toml gives the same period."],
+  ["ring", "For the program: eeruf design ring.toml --program arduino writes the sketch that fires it best."],
   ["scene", "For the program: eeruf study scene.toml compares all methods in this room."],
 ]);
 

@@ -144,7 +144,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
         tell(text + MORE)?;
         return Ok(Answer::Yes);
     }
-    let study = study(args, &world, watch)?;
+    let study = study(args, &world, &{ watch })?;
     if let (Some(file), Some(readings)) = (&args.log, study.runs.first()) {
         write_firings(file, readings)?;
     }
@@ -198,7 +198,7 @@ fn three_ways(args: &Args, world: &World, watch: &Watch) -> Result<String, Input
     Ok(title + &three.describe() + "For your ring: `eeruf design RING.toml --program arduino` (or c, rust, ..).\n")
 }
 
-fn study(args: &Args, world: &World, watch: Watch) -> Result<Study, InputError> {
+fn study(args: &Args, world: &World, watch: &Watch) -> Result<Study, InputError> {
     let sketched = world.robots().iter().any(|robot| robot.firing != Sketch::default());
     let methods = chosen(&args.methods, sketched);
     let bad = |error: &dyn std::fmt::Display| InputError::new(&args.file, error);

@@ -207,8 +207,8 @@ fn list(pins: &[u8]) -> String {
 fn printing(about: &[String], has_dice: bool) -> Vec<String> {
     let seed = if has_dice { "the seed of its random gaps, then " } else { "" };
     let prints = format!(
-        "Prints, at 115200 baud, {seed}for each reading that counts the number of the module and the distance in millimetres, or \
-         `free`. A module that has neither is unknown, which is not free."
+        "Prints, at 115200 baud, {seed}for each reading that counts the number of the module and the distance in \
+         millimetres, or `free`. A module that has neither is unknown, which is not free."
     );
     [about, &[String::new()], &wrapped(&prints)].concat()
 }
@@ -398,7 +398,7 @@ fn rust(wanted: &Wanted<'_>, flow: Option<&FlowDesign>, times: PulseTimes, about
     ];
     Program {
         files: files.into_iter().map(|(name, text)| (name.to_owned(), text)).collect(),
-        next: "in its Cargo.toml name your clone of eeruf; depend on it from your firmware, and call `sonar` with its pins",
+        next: "name your clone in its Cargo.toml; depend on it from your firmware, and call `sonar` with its pins",
     }
 }
 

@@ -205,7 +205,7 @@ impl Described<'_> {
         }
         let title = match differs {
             true => "The answer depends on conditions; elsewhere the recommended way is:",
-            false if !all => "The answer is the same with another gain, without floor and ceiling, and alone.",
+            false if !all => "The answer is the same with another gain, no floor and ceiling, and no other robot.",
             false => "The answer is the same under other conditions:",
         };
         format!("{title}\n{text}")

@@ -78,13 +78,11 @@ static int is_pin(int pin) {
 }
 
 static uint8_t ports['L' - 'A' + 1], directions['L' - 'A' + 1];
-static int index_of(char port) {
-    return port - 'A';
-}
+#define INDEX_OF(port) ((port) - 'A')
 
 /* True if the board itself drives a pin to a level. */
 static int is_driven(int pin, int level) {
-    const int port = index_of(port_of(pin));
+    const int port = INDEX_OF(port_of(pin));
     return directions[port] >> bit_of(pin) & 1 && (ports[port] >> bit_of(pin) & 1) == level;
 }
 
@@ -401,7 +399,7 @@ int main(int argc, char **argv) {
     avr->frequency = 16000000;
     if (eeprom.size > 0) avr_ioctl(avr, AVR_IOCTL_EEPROM_SET, &eeprom);
     for (port = board->ports; *port != 0; port++) {
-        void *number = (void *)(intptr_t)index_of(*port);
+        void *number = (void *)(intptr_t)INDEX_OF(*port);
         const uint32_t io = AVR_IOCTL_IOPORT_GETIRQ(*port);
         avr_irq_register_notify(avr_io_getirq(avr, io, IOPORT_IRQ_REG_PORT), on_port, number);
         avr_irq_register_notify(avr_io_getirq(avr, io, IOPORT_IRQ_DIRECTION_ALL), on_direction, number);

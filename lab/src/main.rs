@@ -52,7 +52,7 @@ const COMMANDS: [Command; 17] = [
     ("four-worlds", "[interference]", "Set I, flat and in a room, with two gains", four_worlds::main),
     (
         "measure",
-        "RING.toml .. [--first N] [--places N] [--choose N] [--csv FILE] [--planted BLOCKS]",
+        "[RING.toml ..] [--first N] [--places N] [--csv FILE] [--blocks N] [--planted BLOCKS]",
         "ways of firing by what a robot needs",
         measure::main,
     ),

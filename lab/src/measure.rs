@@ -1,49 +1,55 @@
-//! Ways of firing rings measured by a robot's needs: the table of `eeruf_sim::experiments::measure`, with intervals,
+//! Ways of firing rings measured by what a robot needs: the table of `eeruf_sim::experiments::measure`, with intervals,
 //! and its rows as CSV.
-//! `cargo lab measure RING.toml .. [--first N] [--places N] [--choose N] [--csv FILE] [--planted BLOCKS]`. Figures are
-//! reported on rooms from number 20,000 on, 6 of each kind; settings are chosen on as many rooms from number 0 on.
-//! `--planted` prints instead how often a sound way is told from a copy of it with a planted flaw.
+//!
+//! `cargo lab measure [RING.toml ..] [--first N] [--places N] [--csv FILE] [--blocks N] [--planted BLOCKS]`:
+//! rooms from number 20,000 on, and 6 of each kind, on which figures are reported; settings are chosen on as many from
+//! number 1,000 on. Without a file it measures rings of 2, 4, 8, 12 and 24 HC-SR04. With `--blocks`, instead what is
+//! recommended in this many blocks of rooms; with `--planted`, how often a sound way is told from itself with something
+//! planted in it.
 
 use std::fs::File;
 use std::io::{BufWriter, Write};
 
-use eeruf_design::RingSpec;
-use eeruf_sim::experiments::FIRST;
+use eeruf_design::{CHOICE, RingDesign, RingSpec, RoomsAsked};
 use eeruf_sim::experiments::measure::{
-    Cell, Condition, Control, Estimate, Family, MeasureAsked, Measured, MeasuredWay, Moving, ONE_A_MINUTE, Operating,
-    Point, Speeds, Under, measure, measured_ways,
+    Cell, Condition, Control, Costs, Estimate, Family, MeasureAsked, Measured, Moving, ONE_A_MINUTE, Operating, Point,
+    RoomWay, Speeds, Under, measure,
 };
+use eeruf_sim::experiments::{ExperimentError, FIRST};
 
+/// Numbers of sensors of the rings that are measured if no file is named.
+const SIZES: [u32; 5] = [2, 4, 8, 12, 24];
+const RING: &str = "module = \"hc-sr04\"\nlayout = \"ring\"\nspeed_m_s = 0.5\n";
+/// From one block of rooms to the next.
+const BLOCK: u64 = 1_000;
 /// Numbers of false stops a minute for which the curve is printed.
 const CURVE: [f64; 3] = [0.1, 1.0, 10.0];
 
 /// The command's arguments.
+#[derive(Clone)]
 struct Arguments {
     rings: Vec<String>,
     first: u64,
     places: u64,
-    choose: u64,
     csv: Option<String>,
     blocks: u64,
+    planted: u64,
 }
 
 impl Arguments {
     fn of(arguments: &[String]) -> Result<Self, Box<dyn std::error::Error>> {
-        let mut asked = Self { rings: vec![], first: FIRST, places: 6, choose: 0, csv: None, blocks: 0 };
+        let mut asked = Self { rings: vec![], first: FIRST, places: 6, csv: None, blocks: 0, planted: 0 };
         let mut words = arguments.iter();
         while let Some(word) = words.next() {
             let mut value = || words.next().ok_or_else(|| format!("{word}: no value; expected one"));
             match word.as_str() {
                 "--first" => asked.first = value()?.parse()?,
                 "--places" => asked.places = value()?.parse()?,
-                "--choose" => asked.choose = value()?.parse()?,
-                "--planted" => asked.blocks = value()?.parse()?,
+                "--blocks" => asked.blocks = value()?.parse()?,
+                "--planted" => asked.planted = value()?.parse()?,
                 "--csv" => asked.csv = Some(value()?.clone()),
                 _ => asked.rings.push(word.clone()),
             }
-        }
-        if asked.choose == 0 {
-            asked.choose = asked.places;
         }
         Ok(asked)
     }
@@ -80,11 +86,11 @@ fn table(measured: &Measured, chosen: &Measured, turn_deg_s: f64) {
     );
     println!("|---|---|---|---:|---:|---:|---:|---:|---:|---:|");
     for (under, chooses) in measured.under.iter().zip(&chosen.under) {
-        let at = |ways: &dyn Fn(usize) -> bool| chooses.operating(chosen, ways, ONE_A_MINUTE);
+        let at = |ways: &dyn Fn(usize) -> bool| chooses.operating(chosen, &chosen.points(ways), ONE_A_MINUTE);
         for (index, way) in measured.ways.iter().enumerate() {
             let name = under.condition.as_str();
             let Some(operating) = at(&|other| other == index) else {
-                println!("| {name} | {} | cannot fire this ring |", way.way.name);
+                println!("| {name} | {} | cannot fire this ring |", way.name);
                 continue;
             };
             let of_family = at(&|other| measured.ways[other].family == way.family);
@@ -96,7 +102,7 @@ fn table(measured: &Measured, chosen: &Measured, turn_deg_s: f64) {
             println!(
                 "| {name} | {mark}{}{mark} | {setting}{none} | {t50:.0} / {t90:.0} / {} | {:.1} | {} | {} | {} | {} | \
                  {} |",
-                way.way.name,
+                way.name,
                 with_interval(&cell.t95_ms, 1.0, 0),
                 100.0 * cell.never,
                 false_stops(&cell),
@@ -116,11 +122,12 @@ fn curve(measured: &Measured, chosen: &Measured) {
     println!("|---|{}", "---|".repeat(Family::ALL.len()));
     for (under, chooses) in measured.under.iter().zip(&chosen.under) {
         let of_family = |family| {
-            let at = |most| chooses.operating(chosen, |way| measured.ways[way].family == family, most);
+            let group = chosen.points(|way| chosen.ways[way].family == family);
+            let at = |most| chooses.operating(chosen, &group, most);
             let words = CURVE.map(|most| match at(most) {
                 Some(Operating::At(point)) => {
                     let t95_ms = under.cell(point, measured).t95_ms.value;
-                    format!("{t95_ms:.0} ({} {})", measured.ways[point.way].way.name, point.setting)
+                    format!("{t95_ms:.0} ({} {})", measured.ways[point.way].name, point.setting)
                 }
                 _ => "none".to_owned(),
             });
@@ -130,22 +137,20 @@ fn curve(measured: &Measured, chosen: &Measured) {
     }
 }
 
-/// Prints how often a sound way loses against a copy of it with a planted flaw, which counts as the simpler one.
-fn planted(ways: &[MeasuredWay], asked: &MeasureAsked, choose: u64, blocks: u64) -> crate::Answer {
-    let Some(sound) = ways.iter().find(|way| way.way.name == "one_by_one_33ms") else { return Ok(()) };
+/// Prints how often a sound way is recommended over itself with something planted in it, which counts as the simpler.
+fn planted(ways: &[RoomWay], asked: &MeasureAsked, blocks: u64) -> crate::Answer {
+    let Some(sound) = ways.iter().find(|way| way.name == "one_by_one_33ms") else { return Ok(()) };
     let controls = Control::PLANTED.map(Some).into_iter().chain([None]);
     let ways: Vec<_> = controls.map(|control| (sound.clone(), control)).collect();
     // Beside another robot, one by one may have no operating point.
     let alone: Vec<_> = asked.conditions.iter().copied().filter(|condition| !condition.others).collect();
     let mut told = [0; Control::PLANTED.len()];
     for block in 0..blocks {
-        let of = |first, places| {
-            measure(&ways, &MeasureAsked { first, places, conditions: alone.clone(), ..asked.clone() }, &|_| true)
-        };
-        let (chosen, measured) = (of(block * choose, choose)?, of(asked.first + block * asked.places, asked.places)?);
+        let of = |first| measure(&ways, &MeasureAsked { first, conditions: alone.clone(), ..asked.clone() }, &|_| true);
+        let (chosen, measured) = (of(block * asked.places)?, of(asked.first + block * asked.places)?);
         for (planted, told) in told.iter_mut().enumerate() {
-            let groups = [vec![planted], vec![Control::PLANTED.len()]];
-            *told += u64::from(measured.costs(&chosen, &groups).recommended == Some(1));
+            let groups = [planted, Control::PLANTED.len()].map(|of| chosen.points(|way| way == of));
+            *told += u64::from(measured.costs(&chosen, &groups[0], &groups).recommended == Some(1));
         }
     }
     for (control, told) in Control::PLANTED.iter().zip(told) {
@@ -160,48 +165,78 @@ fn trials(under: &Under) -> String {
     format!("{}: {things} things in {} rooms, {unread:.0} % drawn again", under.condition.as_str(), under.places.len())
 }
 
+/// The kind that is recommended, in words.
+fn verdict(costs: &Costs) -> String {
+    let name = |family: usize| Family::ALL[family].to_string();
+    let draw = costs.draw.map_or(String::new(), |other| format!(", a draw with {}", name(other)));
+    costs.recommended.map_or("none keeps to one false stop a minute".to_owned(), name) + &draw
+}
+
+/// Measures ways in rooms from a number on.
+fn run(ways: &[RoomWay], asked: &MeasureAsked, first: u64) -> Result<Measured, ExperimentError> {
+    let ways: Vec<_> = ways.iter().map(|way| (way.clone(), None)).collect();
+    measure(&ways, &MeasureAsked { first, ..asked.clone() }, &|_| true)
+}
+
+/// Prints a row of what `eeruf design` recommends in blocks of rooms.
+fn recommended(file: &str, spec: &RingSpec, design: Option<&RingDesign>, asked: &Arguments) -> crate::Answer {
+    let row = (0..asked.blocks).map(|block| {
+        let rooms = RoomsAsked { places: asked.places, first: asked.first + block * BLOCK, ..RoomsAsked::default() };
+        let answer = spec.judge_in_rooms(design, &rooms, &|_| true)?;
+        let draw = answer.draw.map_or(String::new(), |other| format!(", a draw with {other}"));
+        let keeps = if answer.keeps { "" } else { ", which does not keep to one false stop a minute" };
+        Ok(answer.best.map_or("none".to_owned(), |best| best.name.to_owned()) + &draw + keeps)
+    });
+    println!("| {file} | {} |", row.collect::<Result<Vec<_>, String>>()?.join(" | "));
+    Ok(())
+}
+
 pub(crate) fn main(arguments: &[String]) -> crate::Answer {
-    let Arguments { rings, first, places, choose, csv, blocks } = Arguments::of(arguments)?;
-    if rings.is_empty() {
-        return Err("no ring; expected files of rings".into());
-    }
+    let given = Arguments::of(arguments)?;
+    let Arguments { rings, first, places, csv, blocks, planted: planted_blocks } = given.clone();
     let mut out = csv.map(File::create).transpose()?.map(BufWriter::new);
     if let Some(out) = &mut out {
         writeln!(out, "ring,{}", Measured::CSV_HEAD)?;
     }
-    for file in rings {
-        let spec = RingSpec::from_text(&std::fs::read_to_string(&file)?).map_err(|error| error.to_string())?;
+    let read = |file: String| std::fs::read_to_string(&file).map(|text| (file, text));
+    let files: Vec<(String, String)> = match rings.is_empty() {
+        true => SIZES.map(|sensors| (format!("{sensors} HC-SR04"), format!("sensors = {sensors}\n{RING}"))).into(),
+        false => rings.into_iter().map(read).collect::<Result<_, _>>()?,
+    };
+    for (file, text) in files {
+        let spec = RingSpec::from_text(&text).map_err(|error| error.to_string())?;
         let design = spec.shortest_to_study().map_err(|error| error.to_string())?;
-        let robot = design.as_ref().map_or(&spec, |design| &design.spec).room_robot()?.robot;
-        let ways = measured_ways(&robot, design.as_ref().map(|design| &design.schedule));
-        let speeds = Speeds { speed_m_s: spec.room_speed_m_s(), turn_rad_s: spec.room_turn_deg_s().to_radians() };
-        let asked = MeasureAsked { conditions: Condition::ALL.into(), first, places, speeds };
+        let Ok(robot) = design.as_ref().map_or(&spec, |design| &design.spec).room_robot() else {
+            println!("{file}: no places of its sensors, and so no rooms");
+            continue;
+        };
+        let ways = RoomWay::all(&robot.robot, design.as_ref().map(|design| &design.schedule));
+        let turn_deg_s = spec.room_turn_deg_s();
+        let speeds = Speeds { speed_m_s: spec.room_speed_m_s(), turn_rad_s: turn_deg_s.to_radians() };
         if blocks > 0 {
-            planted(&ways, &asked, choose, blocks)?;
+            recommended(&file, &spec, design.as_ref(), &given)?;
             continue;
         }
-        let ways: Vec<_> = ways.into_iter().map(|way| (way, None)).collect();
-        let chosen = measure(&ways, &MeasureAsked { first: 0, places: choose, ..asked.clone() }, &|_| true)?;
-        let measured = measure(&ways, &asked, &|_| true)?;
+        let asked = MeasureAsked { conditions: Condition::ALL.into(), own: vec![], first, places, speeds };
+        if planted_blocks > 0 {
+            planted(&ways, &asked, planted_blocks)?;
+            continue;
+        }
+        let (chosen, measured) = (run(&ways, &asked, CHOICE)?, run(&ways, &asked, first)?);
         println!(
-            "{file}: {places} rooms of each kind from number {first} on, settings from {choose} from number 0 on."
+            "{file}: {places} rooms of each kind from number {first} on, settings from as many from number {CHOICE} on."
         );
         println!("{}.\n", measured.under.iter().map(trials).collect::<Vec<_>>().join("; "));
-        table(&measured, &chosen, spec.room_turn_deg_s());
+        table(&measured, &chosen, turn_deg_s);
         curve(&measured, &chosen);
-        let costs = measured.costs(&chosen, &measured.families());
+        let families = measured.families();
+        let costs = measured.costs(&chosen, &families[0], &families);
         println!("\n| way | cost |\n|---|---:|");
         for (family, cost) in Family::ALL.iter().zip(&costs.costs) {
             let words = cost.cost.as_ref().map_or("none".to_owned(), |cost| with_interval(cost, 1.0, 3));
             println!("| {family} | {words} |");
         }
-        match costs.recommended {
-            Some(best) => {
-                let draw = costs.draw.map_or(String::new(), |other| format!(", a draw with {}", Family::ALL[other]));
-                println!("\nRecommended: {}{draw}.\n", Family::ALL[best]);
-            }
-            None => println!("\nNo way has a point of at most one false stop a minute under each condition.\n"),
-        }
+        println!("\nRecommended: {}.\n", verdict(&costs));
         if let Some(out) = &mut out {
             for row in measured.csv().lines() {
                 writeln!(out, "{file},{row}")?;

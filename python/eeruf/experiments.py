@@ -201,9 +201,7 @@ def recommend(
     rooms: dict[str, _eeruf.Scene] | None = None,
     places: int = 6,
     first: int = 0,
-    driving: bool = False,
-    wrong: float = 0.03,
-    cost: bool = False,
+    all_ways: bool = False,
     progress: _Progress = None,
 ) -> dict[str, Any]:
     r"""Judge the ways of firing a ring in rooms, and recommend one, as ``eeruf study RING.toml --json`` does.
@@ -213,17 +211,16 @@ def recommend(
         rooms: scenes of your own by name, in each of which the ring takes the place of the first robot; by default rooms of
             eight kinds.
         places: rooms of each kind, 1 to 1,000.
-        first: the number of the first room of each kind; ways are chosen on numbers below 2,000, and reported from 20,000 on.
-        driving: whether the robot drives.
-        wrong: the largest share of foreign sound among the accepted readings of a way that is recommended.
-        cost: whether to compute the cost of each kind of way, as ``--cost`` does; takes minutes, and excludes ``rooms``.
+        first: the number of the first room of each kind; ways are chosen on numbers below 2,000, and reported from :data:`FIRST` on.
+        all_ways: whether to measure every way, and to say what the answer is beside others and with the other gain; takes minutes.
         progress: True for a bar (tqdm if it is installed), or a callable that takes the share done and a text.
 
     Returns:
-        A dict: ``recommended``, the name of the way; ``keeps``, whether it keeps to the limits in each kind of room; ``assumed``, the
-        assumptions where the file is silent; ``ways``, each with ``way``, ``title`` and ``rooms``, its figures by kind of room;
-        ``elsewhere``, the ways with another gain and height; and with ``cost`` also ``by_cost``, the kinds of ways ordered by how
-        soon the ring sees a new object, under the conditions in the file.
+        ``recommended``, the name of the way; ``keeps``, whether it has at most one false stop a minute under each condition in which
+        the file says that the ring is used; ``draw``, a kind of way that may be better; ``assumed``, where the file is silent;
+        ``kinds``, each with its ``cost`` (how soon it sees what appears; the best one by one is 1) and the ``best`` way under each
+        condition with its figures; ``elsewhere``, the kind to recommend under each condition by itself; ``ways``, every way, if
+        asked for.
 
     Raises:
         EerufError: a number is out of range, or the file cannot be read or does not say where its sensors are.
@@ -234,11 +231,11 @@ def recommend(
         >>> ring = pathlib.Path(tempfile.mkdtemp(), "ring.toml")
         >>> _ = ring.write_text("sensors = 4\nmodule = 'hc-sr04'\nlayout = 'ring'")
         >>> answer = eeruf.experiments.recommend(ring, places=1)
-        >>> answer["ways"][0]["way"], sorted(answer["ways"][0]["rooms"])[:2]
-        ('sequential', ['aisle', 'alcove'])
+        >>> answer["kinds"][0]["kind"], [way["condition"] for way in answer["kinds"][0]["best"]]
+        ('one by one', ['standing', 'driving', 'turning'])
         >>> walls = [[-2, -2, 2, -2], [2, -2, 2, 2], [2, 2, -2, 2], [-2, 2, -2, -2]]
         >>> box = eeruf.sim.Scene(walls, robots=[eeruf.sim.Robot((0, 0, 0), sensors=[(0.2, 0, 0)])])
-        >>> list(eeruf.experiments.recommend(ring, rooms={"box": box})["ways"][0]["rooms"])
+        >>> list(eeruf.experiments.recommend(ring, rooms={"box": box}, places=1)["kinds"][0]["best"][0]["rooms"])
         ['box']
 
     """
@@ -246,9 +243,7 @@ def recommend(
         "rooms": rooms,
         "places": places,
         "first": first,
-        "driving": driving,
-        "wrong": wrong,
-        "cost": cost,
+        "all_ways": all_ways,
     }
     answer: dict[str, Any] = json.loads(_eeruf._recommend(ring, asked, progress))
     return answer

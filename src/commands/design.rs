@@ -8,11 +8,8 @@ use clap::builder::PossibleValue;
 use eeruf_core::Micros;
 use eeruf_core::search::Progress;
 use eeruf_design::atlas::ATLAS;
-use eeruf_design::{
-    CURVE_BUDGET, Effort, FoundJson, How, Need, NoDesign, RingDesign, RingSpec, RoomsAnswer, UnderCondition, Way,
-};
+use eeruf_design::{CURVE_BUDGET, Effort, FoundJson, How, Need, NoDesign, RingDesign, RingSpec, RoomsAnswer, Way};
 use eeruf_files::emit;
-use eeruf_sim::experiments::rooms::RoomWay;
 use serde::Serialize;
 
 use super::arguments::{picture, seconds};
@@ -28,19 +25,20 @@ use crate::report::design::describe;
 use crate::report::draw;
 use crate::report::json::to_json;
 use crate::report::questions::{CurveJson, describe_curve, describe_fit, fit_json};
-use crate::report::rooms::{RoomsOrNot, describe as describe_rooms, describe_all, describe_elsewhere};
+use crate::report::rooms::{RoomsOrNot, describe as describe_rooms, describe_all};
 use crate::report::watch::Watch;
 
 /// Say how to fire a ring, what that buys and how to get it.
 ///
-/// The ring is fired in every way (one by one, at once, in groups, in two phases, by flow) in seeded
-/// rooms of eight kinds, standing or --driving. Among the ways that keep foreign sound below --wrong and leave
-/// no sensor blind, the recommended one is right most of the time. The answer lists its assumptions.
+/// The ring is fired one by one, in groups, in two phases and by flow in seeded rooms of eight kinds, as its file says
+/// it is used: standing, driving at speed_m_s, turning at turn_deg_s, and with `others = true` beside another robot of
+/// its make. The way recommended sees soonest what appears, of those with at most one false stop a minute; where that
+/// is not sure, it is the simpler way. The answer lists what it depends on.
 ///
-/// --program writes a folder that builds, and --emit rust, c or arduino writes the settings alone, for the best way
-/// that a program can use: one by one, groups, two phases or flow. --period-only and --emit toml write the shortest
-/// schedule of two phases. Among schedules of one period, the command prefers a larger T_delta, then a larger smallest
-/// interval, then evener firing.
+/// --program writes a folder that builds, and --emit rust, c and arduino the settings alone, for the way recommended,
+/// or another --way. --period-only and --emit toml write the shortest
+/// schedule of two phases. Among schedules of one period it prefers a larger T_delta, then a larger smallest interval,
+/// then evener firing.
 ///
 /// Four lines are enough for a ring file: sensors, module, layout and speed_m_s. The sensors' places (spacing_deg and
 /// radius_m, or poses, or urdf and links) make the answer the robot's own. Instead of the module it may give times
@@ -94,11 +92,11 @@ pub(crate) struct Args {
     /// Print the shortest period of two phases too: its proof, its limits, and the schedule
     #[arg(long, conflicts_with_all = ["period", "curve", "program"])]
     proof: bool,
-    /// Print every way of firing in every kind of room too
+    /// Print every way under each condition too
     #[arg(long, conflicts_with_all = ["period", "curve", "program", "period_only"])]
     all: bool,
     /// Find the shortest period and judge nothing in rooms
-    #[arg(long, hide_short_help = true, conflicts_with_all = ["rooms", "places", "first", "wrong", "driving"])]
+    #[arg(long, conflicts_with_all = ["rooms", "places", "first"])]
     period_only: bool,
     #[command(flatten)]
     program: ProgramArgs,
@@ -173,9 +171,6 @@ struct Answered<'a> {
     rooms: Option<RoomsOrNot<'a>>,
     #[serde(skip_serializing_if = "Option::is_none")]
     how: Option<How>,
-    /// The time until the way sees an object that appears, and its false stops, under each condition.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    conditions: Vec<UnderCondition>,
     /// Pairs of neighbours, by number, that do not hear each other in their places.
     #[serde(skip_serializing_if = "<[_]>::is_empty")]
     not_neighbours: &'a [(usize, usize)],
@@ -229,17 +224,13 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let certificate = args.certificate.as_ref().map(prove);
     watch.forget_interrupt();
     let judges = !args.period_only && matches!(args.form(), None | Some(Form::Json));
-    let rooms = judges.then(|| rooms::judged(&args.in_rooms, &spec, Some(&design), &watch)).transpose()?;
-    let conditions = match args.form() {
-        Some(Form::Json) => rooms::conditions(&args.in_rooms, &design.spec, rooms.as_ref(), &watch)?,
-        _ => vec![],
-    };
-    // A schedule file holds a table, and flow has none.
+    let rooms = judges.then(|| rooms::judged(&args.in_rooms, &spec, Some(&design), args.all, &watch)).transpose()?;
+    // A schedule file holds a table, which flow has not.
     let emits = !args.period_only && matches!(args.form(), Some(Form::Source(form)) if form != emit::Form::Toml);
-    let way = emits.then(|| rooms::recommended(&args.in_rooms, &spec, &design, &watch)).transpose()?;
+    let way = emits.then(|| args.program.fires(&design, &args.in_rooms, &watch)).transpose()?;
     drop(watch);
-    let best = rooms.as_ref().and_then(|rooms| rooms.as_ref().ok()?.judgement.best());
-    let how = best.map(|best| design.spec.how(&best.way)).transpose();
+    let best = rooms.as_ref().and_then(|rooms| rooms.as_ref().ok()?.best.as_ref());
+    let how = best.map(|best| design.spec.how(best)).transpose();
     let how = how.map_err(|why| InputError::new(&args.file, why))?.flatten();
     let requirements = design.spec.problem().requirements;
     if let Some(file) = &args.svg {
@@ -259,16 +250,14 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
             let FoundJson { value_us, bound_us, proven, .. } = found;
             let period = PeriodJson { value_us, bound_us, proven, reason: found.reason.clone() };
             let period = rooms.is_some().then_some(period);
-            let not_neighbours = &spec.not_neighbours;
             let rooms = rooms.as_ref().map(RoomsOrNot::of);
-            print_line(to_json(&Answered { found, period, rooms, how, conditions, not_neighbours }))?;
+            print_line(to_json(&Answered { found, period, rooms, how, not_neighbours: &spec.not_neighbours }))?;
         }
         Some(Form::Source(form)) => {
             let table = || form.table(&design.schedule, &design.spec.table_requirements(), &design.spec.modules);
             print(match &way {
-                Some(Ok(Some(judged))) if let Some(way) = settings(judged) => {
-                    let flow =
-                        design.spec.fired(way, &judged.robot, 1).map_err(|why| InputError::new(&args.file, why))?;
+                Some(Ok((way, robot))) if *way != Way::TwoPhases => {
+                    let flow = design.spec.fired(*way, robot, 1).map_err(|why| InputError::new(&args.file, why))?;
                     let words = wrapped(&way.in_words(&flow.turns));
                     let comment: String = words.iter().map(|line| form.comment(line)).collect();
                     comment + &flow_source(&design.spec, form, &flow)
@@ -295,7 +284,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     Ok(certified)
 }
 
-/// Writes the answer's second part: how to fire, when not to, and the command that writes its program.
+/// The answer's second part: how to fire by a way, and the command that writes its program.
 fn how_to(name: &str, spec: &RingSpec, how: Option<&How>, rooms: &Result<RoomsAnswer, String>) -> String {
     let (Some(how), Ok(answer)) = (how, rooms) else { return String::new() };
     let list = |sensors: &[u8]| sensors.iter().map(|x| (x + 1).to_string()).collect::<Vec<_>>().join(", ");
@@ -312,25 +301,19 @@ fn how_to(name: &str, spec: &RingSpec, how: Option<&How>, rooms: &Result<RoomsAn
         text += &format!("\nAssumed: {assumed}.");
     }
     let languages = if how.order.is_empty() { "" } else { " (or rust, c, micropython, ros2)" };
-    let elsewhere = describe_elsewhere(rooms);
     let get = match spec.modules.is_empty() {
         true => "name the module in the file, as `module = \"hc-sr04\"`; then --program arduino".to_owned(),
         false => format!("eeruf design {name} --program arduino{languages}"),
     };
-    format!("{text}\n{elsewhere}\nTo get it: {get}\n")
+    format!("{text}\n\nTo get it: {get}\n")
 }
 
 /// Writes the answer's end: what was left out, and the options that print it.
 fn more(design: &RingDesign, all: bool) -> String {
     let period = design.schedule.period();
     let proven = if design.found.proven { ", proven" } else { "" };
-    let all = if all { "" } else { "; --all: every way in every kind of room" };
+    let all = if all { "" } else { "; --all: every way" };
     format!("--proof: the shortest period of two phases ({period}{proven}) and its schedule{all}\n")
-}
-
-/// Returns the settings of a flow ring's way; `None` for a table.
-fn settings(judged: &RoomWay) -> Option<Way> {
-    Way::of(judged).filter(|&way| way != Way::TwoPhases)
 }
 
 /// Answers `--period`.

@@ -6,6 +6,7 @@ use clap::ValueEnum;
 use clap::builder::PossibleValue;
 use eeruf_design::{RingDesign, Way};
 use eeruf_files::Kind;
+use eeruf_sim::Robot;
 
 use super::Answer;
 use super::rooms::{self, RoomArgs};
@@ -32,9 +33,8 @@ pub(crate) struct ProgramArgs {
     /// The program's folder; by default one with the ring file's name
     #[arg(long, value_name = "DIR", requires = "program")]
     out: Option<PathBuf>,
-    /// The program's way of firing, which is then not judged in rooms; by default the recommended
-    /// one
-    #[arg(long, value_enum, value_name = "WAY", requires = "program")]
+    /// The way of firing, for --program and --emit; by default the recommended one
+    #[arg(long, value_enum, value_name = "WAY", conflicts_with_all = ["json", "period", "curve", "period_only"])]
     way: Option<Named>,
 }
 
@@ -52,7 +52,27 @@ impl ValueEnum for Named {
     }
 }
 
-/// Writes the program, and prints what it is and what to do next.
+impl ProgramArgs {
+    /// The way of firing with the robot that fires so: the one asked for, else the one that is recommended; or why
+    /// that cannot be said.
+    pub(crate) fn fires(
+        &self,
+        design: &RingDesign,
+        in_rooms: &RoomArgs,
+        watch: &Watch,
+    ) -> Result<Result<(Way, Robot), String>, InputError> {
+        if let Some(Named(way)) = self.way {
+            return Ok(design.spec.room_robot().map(|of| (way, of.robot)));
+        }
+        let none = || "no way can fire this ring; `eeruf design` says why".to_owned();
+        Ok(rooms::judged(in_rooms, &design.spec, Some(design), false, watch)?.and_then(|answer| {
+            let best = answer.best.ok_or_else(none)?;
+            Ok((Way::of(&best).ok_or_else(none)?, best.robot))
+        }))
+    }
+}
+
+/// Writes the program, and says what it is and what to do with it.
 pub(crate) fn run(
     args: &ProgramArgs,
     (file, language): (&Path, Language),
@@ -61,21 +81,19 @@ pub(crate) fn run(
     watch: &Watch,
 ) -> Result<Answer, InputError> {
     let bad = |why: String| InputError::new(file, why);
-    let way = match args.way {
-        Some(Named(way)) => way,
-        None => {
-            let best = rooms::recommended(in_rooms, &design.spec, design, watch)?.map_err(bad)?;
-            let none = || bad("no way can fire this ring; `eeruf design` says why".to_owned());
-            best.as_ref().and_then(Way::of).ok_or_else(none)?
-        }
-    };
+    let (mut way, robot) = args.fires(design, in_rooms, watch)?.map_err(bad)?;
     let folder = args.out.clone().unwrap_or_else(|| PathBuf::from(file.file_stem().unwrap_or_default()));
     let name = plain(&folder);
     let (text, shown) = (Kind::Ring.read(file)?, file.file_name().unwrap_or_default().to_string_lossy());
-    let robot = design.spec.room_robot().map_err(bad)?.robot;
-    let wanted = Wanted { file: (&shown, &text), design, robot: &robot, way, mavlink: args.mavlink, name: &name };
-    let program = program(&wanted, language, args.board).map_err(bad)?;
-    // Files that the user may have edited are kept.
+    let wanted = |way| Wanted { file: (&shown, &text), design, robot: &robot, way, mavlink: args.mavlink, name: &name };
+    let mut written = program(&wanted(way), language, args.board);
+    // Flow is what a program has in every language.
+    if written.is_err() && args.way.is_none() {
+        way = Way::Flow;
+        written = program(&wanted(way), language, args.board);
+    }
+    let program = written.map_err(bad)?;
+    // What somebody may have changed by hand stays.
     let there = program.files.iter().map(|(path, _)| folder.join(path)).find(|path| path.exists());
     if let Some(there) = there {
         return Err(InputError::new(&there, "it is there already; expected a new folder, by --out DIR"));

@@ -3,50 +3,38 @@
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 
-use eeruf_design::{CHOICE, RingDesign, RingSpec, RoomsAnswer, RoomsAsked, UnderCondition};
+use eeruf_design::{RingDesign, RingSpec, RoomsAnswer, RoomsAsked};
 use eeruf_files::{FileError, Kind};
-use eeruf_sim::experiments::measure::{
-    Condition, Family, MeasureAsked, MeasuredWay, Moving, Speeds, measure, measured_ways,
-};
-use eeruf_sim::experiments::rooms::{RoomGroup, RoomWay};
+use eeruf_sim::experiments::rooms::RoomGroup;
 
 use super::{Answer, show};
-use crate::console::tell;
 use crate::files::error::InputError;
+use crate::files::implausible::warn;
 use crate::files::map::read_map;
 use crate::files::ring::read_ring;
 use crate::files::toml::read_world;
 use crate::report::rooms::{RoomsOrNot, describe, describe_all};
-use crate::report::three::Three;
 use crate::report::watch::Watch;
 
 /// Options for judging ways of firing in rooms.
 #[derive(clap::Args)]
 pub(crate) struct RoomArgs {
-    /// Judge ways of firing in these scenes and maps instead of the usual rooms: files, or folders of them. The
-    /// ring takes the place of a scene's first robot, or stands at free --places of a map
+    /// Judge in these scenes and maps, or folders of them, instead of the usual rooms: the ring takes the place of a
+    /// scene's first robot, or stands at free --places of a map
     #[arg(long, value_name = "SCENE.toml|MAP.yaml|DIR")]
     rooms: Vec<PathBuf>,
     /// Number of rooms of each kind, and of places in each map; 6 by default
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
+    #[arg(long, hide_short_help = true, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=1000))]
     places: Option<u64>,
     /// Number of the first room of each kind, or place in each map; 0 by default. Ways are chosen on numbers below
     /// 2000; report those from 20000 on
     #[arg(long, hide_short_help = true, value_name = "N")]
     #[arg(value_parser = clap::value_parser!(u64).range(..=1_000_000_000))]
     first: Option<u64>,
-    /// The largest share of foreign sound among the accepted readings of a recommended way, in per cent; 3 by
-    /// default
-    #[arg(long, hide_short_help = true, value_name = "PERCENT", value_parser = percent)]
-    wrong: Option<f64>,
-    /// Let the robot drive through the rooms at the ring's speed_m_s, or 0.3 m/s
-    #[arg(long, hide_short_help = true)]
+    #[arg(long, hide = true, value_name = "PERCENT")]
+    wrong: Option<String>,
+    #[arg(long, hide = true)]
     driving: bool,
-}
-
-fn percent(text: &str) -> Result<f64, String> {
-    let number = text.parse().ok().filter(|number| (0.0..=100.0).contains(number));
-    number.ok_or_else(|| "expected a number from 0 to 100".to_owned())
 }
 
 impl RoomArgs {
@@ -56,121 +44,52 @@ impl RoomArgs {
             ("--rooms", !self.rooms.is_empty()),
             ("--places", self.places.is_some()),
             ("--first", self.first.is_some()),
-            ("--wrong", self.wrong.is_some()),
-            ("--driving", self.driving),
         ];
-        given.into_iter().find(|(_, given)| *given).map(|(name, _)| name)
+        given.into_iter().chain(self.without_effect()).find(|(_, given)| *given).map(|(name, _)| name)
+    }
+
+    fn without_effect(&self) -> [(&'static str, bool); 2] {
+        [("--wrong", self.wrong.is_some()), ("--driving", self.driving)]
     }
 }
 
-/// Measures a ring file's ways of firing, without its period: `eeruf study RING.toml`. With `all`, or in the user's own
-/// rooms, it prints every way in every kind of room; with `cost`, it prints the cost of each kind of way.
-pub(crate) fn study(args: &RoomArgs, file: &Path, as_json: bool, all: bool, cost: bool) -> Result<Answer, InputError> {
+/// Judges a ring file's ways of firing, without a word of its period: `eeruf study RING.toml`. With `all` or rooms of
+/// the user's own it prints every way under each condition.
+pub(crate) fn study(args: &RoomArgs, file: &Path, as_json: bool, all: bool) -> Result<Answer, InputError> {
     let spec = read_ring(file)?;
     let watch = Watch::new();
     let design = spec.shortest_to_study().map_err(|error| InputError::new(file, error))?;
+    let all = all || !args.rooms.is_empty();
+    let judged = judged(args, &spec, design.as_ref(), all, &watch)?;
+    drop(watch);
     let name = file.display().to_string();
-    if as_json || all || cost || !args.rooms.is_empty() {
-        let mut judged = judged(args, &spec, design.as_ref(), &watch)?;
-        // In rooms of the user's own nothing appears.
-        if let Some(answer) = judged.as_mut().ok().filter(|_| cost && args.rooms.is_empty()) {
-            answer.by_cost =
-                spec.cost_in_rooms(design.as_ref(), &asked(args, &spec)?, &|done| goes_on(&watch, done)).ok();
-        }
-        drop(watch);
-        show(as_json, || RoomsOrNot::of(&judged), || describe(&name, &judged) + &describe_all(&judged))?;
-        return Ok(if judged.is_ok() { Answer::Yes } else { Answer::No });
-    }
-    match three_ways(args, &spec, design.as_ref(), &watch)? {
-        Ok(text) => tell(format!("{name}: {text}")).map(|()| Answer::Yes),
-        Err(why) => tell(format!("{name}: not judged in rooms: {why}.\n")).map(|()| Answer::No),
-    }
-    .map_err(InputError::from)
+    let more = || match (&judged, all) {
+        (Ok(_), false) => "`eeruf design` says how to get it, `--all` every way.\n".to_owned(),
+        _ => describe_all(&judged),
+    };
+    show(as_json, || RoomsOrNot::of(&judged), || describe(&name, &judged) + &more())?;
+    Ok(if judged.is_ok() { Answer::Yes } else { Answer::No })
 }
 
-/// Compares the recommended way with firing one by one in rooms; or gives the reason why there is none.
-fn three_ways(
-    args: &RoomArgs,
-    spec: &RingSpec,
-    design: Option<&RingDesign>,
-    watch: &Watch,
-) -> Result<Result<String, String>, InputError> {
-    let asked = asked(args, spec)?;
-    let found = spec.recommended_in_rooms(design, &asked, &|share| goes_on(watch, share));
-    let robot = design.map_or(spec, |design| &design.spec).room_robot();
-    let (best, robot) = match found.and_then(|best| Ok((best, robot?.robot))) {
-        Ok((Some(best), robot)) => (best, robot),
-        Ok((None, _)) => return Ok(Err("no way of firing is possible for this ring".to_owned())),
-        Err(why) => return Ok(Err(why)),
-    };
-    let ways = measured_ways(&robot, design.map(|design| &design.schedule));
-    let of_best = ways.iter().find(|way| way.way.name == best.name).map_or(Family::OneByOne, |way| way.family);
-    let other = if of_best == Family::OneByOne { Family::Flow } else { of_best };
-    let name = if of_best == Family::OneByOne { "flow" } else { best.name };
-    let is_shown = |way: &MeasuredWay| way.family == Family::OneByOne || way.way.name == name;
-    let ways: Vec<_> = ways.into_iter().filter(is_shown).map(|way| (way, None)).collect();
-    let moving = if asked.driving { Moving::Driving } else { Moving::Standing };
-    let speeds = Speeds { speed_m_s: spec.room_speed_m_s(), turn_rad_s: 0.0 };
-    let measured = |first: u64| {
-        let conditions = vec![Condition { moving, others: false }];
-        let asked = MeasureAsked { conditions, first, places: asked.places, speeds };
-        measure(&ways, &asked, &|share| goes_on(watch, share)).map_err(|error| error.to_string())
-    };
-    let both = measured(CHOICE).and_then(|chosen| Ok((chosen, measured(asked.first)?)));
-    Ok(both.map(|(chosen, measured)| {
-        let rooms = measured.under.first().map_or(0, |under| under.places.len());
-        let moves = if asked.driving { "driving" } else { "standing" };
-        let title = format!("{} sensors; in {rooms} rooms, {moves}, a thing appears.\n\n", spec.sensors);
-        let is_recommended = Some(of_best != Family::OneByOne);
-        let three = Three { chosen: &chosen, measured: &measured, other, is_recommended };
-        title + &three.describe() + "`eeruf design` says how to get it, `--all` every way in every room.\n"
-    }))
-}
-
-/// Judges the ways of firing a ring, with the schedule of two phases found for it; or gives the reason why it cannot.
+/// Judges the ways of firing a ring, with the schedule of two phases that was found for it; or says why that cannot be
+/// done.
 pub(crate) fn judged(
     args: &RoomArgs,
     spec: &RingSpec,
     design: Option<&RingDesign>,
+    all: bool,
     watch: &Watch,
 ) -> Result<Result<RoomsAnswer, String>, InputError> {
-    Ok(spec.judge_in_rooms(design, &asked(args, spec)?, &|share| goes_on(watch, share)))
-}
-
-/// The figures of the recommended way where the ring is used; none in the user's own rooms, where nothing appears.
-pub(crate) fn conditions(
-    args: &RoomArgs,
-    spec: &RingSpec,
-    judged: Option<&Result<RoomsAnswer, String>>,
-    watch: &Watch,
-) -> Result<Vec<UnderCondition>, InputError> {
-    let best = judged.and_then(|judged| judged.as_ref().ok()?.judgement.best());
-    let Some(best) = best.filter(|_| args.rooms.is_empty()) else { return Ok(vec![]) };
-    Ok(spec.way_in_rooms(&best.way, &asked(args, spec)?, &|share| goes_on(watch, share)).unwrap_or_default())
-}
-
-/// The recommended way of firing a ring, by [`judged`]; or the reason why there is none.
-pub(crate) fn recommended(
-    args: &RoomArgs,
-    spec: &RingSpec,
-    design: &RingDesign,
-    watch: &Watch,
-) -> Result<Result<Option<RoomWay>, String>, InputError> {
-    Ok(spec.recommended_in_rooms(Some(design), &asked(args, spec)?, &|share| goes_on(watch, share)))
-}
-
-fn asked(args: &RoomArgs, spec: &RingSpec) -> Result<RoomsAsked, InputError> {
+    for (name, _) in args.without_effect().into_iter().filter(|(_, given)| *given) {
+        let used = "a ring is judged standing, driving and turning, as its file says it is used";
+        warn(InputError::new(name, format!("no effect; {used}")))?;
+    }
     let default = RoomsAsked::default();
     let (places, first) = (args.places.unwrap_or(default.places), args.first.unwrap_or(default.first));
     // A ring without places is refused later, when it is judged.
     let radius_m = spec.room_robot().map_or(0.0, |robot| robot.robot.radius_m());
-    Ok(RoomsAsked {
-        own: own_rooms(&args.rooms, first..first.saturating_add(places), radius_m)?,
-        places,
-        first,
-        driving: args.driving,
-        wrong: args.wrong.map_or(default.wrong, |percent| percent / 100.0),
-    })
+    let own = own_rooms(&args.rooms, first..first.saturating_add(places), radius_m)?;
+    Ok(spec.judge_in_rooms(design, &RoomsAsked { own, places, first, all }, &|share| goes_on(watch, share)))
 }
 
 fn goes_on(watch: &Watch, share: f64) -> bool {

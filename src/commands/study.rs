@@ -26,23 +26,19 @@ use crate::report::watch::Watch;
 
 /// Compare firing as sketches do, one by one and the recommended way in a scene, or for a ring in rooms.
 ///
-/// Prints a row for each, and what to do: how soon the ring sees an object that appears (t95), how often foreign sound
-/// stops the robot, how many sensors are blind, and how many right echoes there are per second. In a scene, 60 objects
-/// appear (20 if anything moves), one at a time, in front of the first robot's sensors.
+/// Prints a row for each, and what to do: how soon the ring sees what steps before it (t95), how often foreign sound
+/// stops the robot, how many sensors are blind, and how often it is right. In a scene 60 things appear (20 where
+/// something moves), one at a time, before the first robot's sensors. A ring is judged as its file says it is used.
 #[derive(clap::Args)]
 #[command(after_long_help = every_method())]
 pub(crate) struct Args {
     /// The scene; or a ring, which is judged in rooms
     #[arg(value_name = "SCENE.toml|RING.toml")]
     file: PathBuf,
-    /// Print every method's tables too, and who fooled whom
+    /// Print every method's tables too, and who fooled whom; of a ring every way, and the answer under other conditions
     #[arg(long)]
     all: bool,
-    /// Print the cost of each kind of way of firing a ring file's ring, too, by how soon it sees an object that
-    /// appears: standing, driving, turning, and near others if the file says so; takes minutes
-    #[arg(long, hide_short_help = true)]
-    cost: bool,
-    /// Number of the first robot's periods in tables, which are then printed, and pictures; by default 2000, or
+    /// Number of the first robot's periods in tables, which it prints as --all does, and pictures; by default 2000, or
     /// 250 if anything moves
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=10_000_000))]
     periods: Option<u32>,
@@ -118,7 +114,7 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     if Kind::of_file(&args.file) == Some(Kind::Ring) {
         return match args.of_scenes() {
             Some(option) => refuse(option, "a scene"),
-            None => rooms::study(&args.in_rooms, &args.file, args.json, args.all, args.cost),
+            None => rooms::study(&args.in_rooms, &args.file, args.json, args.all),
         };
     }
     if let Some(option) = args.in_rooms.given() {
@@ -194,7 +190,7 @@ fn three_ways(args: &Args, world: &World, watch: &Watch) -> Result<String, Input
     let things = measured.under.iter().flat_map(|under| &under.places).filter(|place| place.thing.is_some()).count();
     let of = if world.robots().len() > 1 { " of robot 1" } else { "" };
     let title = format!("{}: {sensors} sensors{of}; {things} things appear before them.\n\n", args.file.display());
-    let three = Three { chosen: &chosen, measured: &measured, other: Family::Flow, is_recommended: None };
+    let three = Three { chosen: &chosen, measured: &measured };
     Ok(title + &three.describe() + "For your ring: `eeruf design RING.toml --program arduino` (or c, rust, ..).\n")
 }
 

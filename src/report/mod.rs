@@ -3,7 +3,6 @@
 //! Uses the libraries and `files`; knows nothing of commands and their arguments.
 
 pub(crate) mod bounces;
-mod cost;
 pub(crate) mod design;
 pub(crate) mod diagnose;
 pub(crate) mod draw;

@@ -1,5 +1,4 @@
-//! The answer of `study`: a row each for firing like sketches, the best way one by one and the recommended way, and
-//! what to do.
+//! The answer of `study` for a scene: firing as sketches do, the best one by one and flow, a row each, and what to do.
 
 use std::fmt::Write as _;
 
@@ -11,39 +10,14 @@ use super::table::markdown;
 pub(crate) struct Three<'a> {
     pub(crate) chosen: &'a Measured,
     pub(crate) measured: &'a Measured,
-    /// The family of the way compared with one by one.
-    pub(crate) other: Family,
-    /// True if the other way is recommended; `None` lets the measurement decide.
-    pub(crate) is_recommended: Option<bool>,
 }
 
-/// Returns the words for a way of firing.
-fn in_words(name: &str, setting: Setting) -> String {
-    let way = match name {
-        "blocking" if setting == Setting::ALL[0] => "blocking, as sketches fire",
-        "blocking" => "one by one, in a loop",
-        "in_turn" => "one by one, after an echo",
-        "sequential" => "one by one, after the sound",
-        "one_by_one_10ms" => "one by one, 10 ms apart",
-        "one_by_one_20ms" => "one by one, 20 ms apart",
-        "one_by_one_33ms" => "one by one, 33 ms apart",
-        "far_groups" => "groups, far apart",
-        "eeruf" => "two phases (EERUF)",
-        _ => name,
-    };
-    match setting {
-        Setting::Votes { m: 1, .. } => way.to_owned(),
-        Setting::Votes { m, n } => format!("{way}, {m} of {n}"),
-        Setting::Median => format!("{way}, median"),
-    }
-}
-
-/// Formats a 95th percentile for sentences and tables.
-fn t95(cell: &Cell) -> String {
+/// A 95th percentile in words, for sentences and tables.
+pub(super) fn t95(cell: &Cell) -> String {
     if cell.t95_ms.value.is_finite() { format!("{:.0}", cell.t95_ms.value) } else { "never".to_owned() }
 }
 
-fn stops(cell: &Cell) -> String {
+pub(super) fn stops(cell: &Cell) -> String {
     match cell.false_stops {
         0 => format!("< {:.1}", 3.0 / cell.minutes),
         _ => format!("{:.1}", cell.false_stops_per_min.value),
@@ -53,20 +27,18 @@ fn stops(cell: &Cell) -> String {
 impl Three<'_> {
     /// Writes the table, the meaning of its columns, and the recommendation.
     pub(crate) fn describe(&self) -> String {
-        let Self { chosen, measured, other, is_recommended } = *self;
+        let Self { chosen, measured } = *self;
         let (Some(under), Some(chooses)) = (measured.under.first(), chosen.under.first()) else {
             return String::new();
         };
-        let of = |family| chooses.operating(chosen, |way| measured.ways[way].family == family, ONE_A_MINUTE);
-        let group = |family: Family| -> Vec<usize> {
-            (0..measured.ways.len()).filter(|&way| measured.ways[way].family == family).collect()
-        };
-        let costs = measured.costs(chosen, &[group(Family::OneByOne), group(other)]);
-        let is_other = is_recommended.or(costs.recommended.map(|index| index == 1));
-        let blocking = measured.ways.iter().position(|way| way.way.name == "blocking");
+        let groups = [Family::OneByOne, Family::Flow].map(|of| measured.points(|way| measured.ways[way].family == of));
+        let costs = measured.costs(chosen, &groups[0], &groups);
+        let is_other = costs.recommended.map(|index| index == 1);
+        let blocking = measured.ways.iter().position(|way| way.name == "blocking");
         let blocking = blocking.map(|way| Point { way, setting: Setting::ALL[0] });
-        let [one_by_one, other] = [Family::OneByOne, other].map(|family| of(family).map(Operating::point));
-        let name = |point: Point| in_words(measured.ways[point.way].way.name, point.setting);
+        let at = |group: &Vec<Point>| chooses.operating(chosen, group, ONE_A_MINUTE).map(Operating::point);
+        let [one_by_one, other] = groups.each_ref().map(at);
+        let name = |point: Point| measured.ways[point.way].in_words(point.setting);
         let cell = |point: Point| under.cell(point, measured);
         let row = |point: Point| {
             let cell = cell(point);

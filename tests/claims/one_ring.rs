@@ -445,7 +445,7 @@ fn every_key_of_a_ring_file_reaches_its_ring() {
 #[test]
 fn ring_of_a_module_alone_is_that_of_its_file() {
     let (folder, file) = Scratch::new("ring.toml", "sensors = 8\nmodule = \"hc-sr04\"\nlayout = \"ring\"\n");
-    let emitted = eeruf(&["design", file.to_str().unwrap(), "--places", "1", "--emit", "c"]).out;
+    let emitted = eeruf(&["design", file.to_str().unwrap(), "--way", "flow", "--emit", "c"]).out;
     std::fs::write(folder.path().join("ring.h"), &emitted).unwrap();
     let equal = ["window_us", "blanking_us", "least_us", "most_us", "rest_us", "dice_us", "t_delta_us", "near_us"]
         .map(|number| format!("mine.{number} == eeruf_flow_config.{number}"));

@@ -7,7 +7,7 @@ const PROGRAM: &str = env!("CARGO_BIN_EXE_eeruf");
 
 /// One run of each command that prints, fast.
 const RUNS: [&[&str]; 18] = [
-    &["design", "rings/paper-12.toml", "--places", "1"],
+    &["design", "rings/paper-12.toml", "--period-only"],
     &["design", "rings/paper-12.toml", "--period-only", "--json"],
     &["design", "rings/paper-12.toml", "--period-only", "--emit", "rust"],
     &["verify", "rings/table-i-d.toml"],

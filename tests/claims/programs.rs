@@ -20,7 +20,7 @@ fn readme_goes_from_four_lines_to_a_program_in_each_language() {
         ("ros2", "ros2/eeruf.yaml"),
     ] {
         let out = folder.path().join(main.split('/').next().unwrap());
-        let words = ["design", file, "--places", "1", "--program", language, "--out", out.to_str().unwrap()];
+        let words = ["design", file, "--way", "flow", "--program", language, "--out", out.to_str().unwrap()];
         let said = eeruf(&words);
         assert_eq!((said.code, said.out.contains("of a ring that fires by flow; ")), (Some(0), true), "{}", said.err);
         let text = std::fs::read_to_string(folder.path().join(main)).unwrap();
@@ -48,11 +48,11 @@ fn parameters_of_the_node_are_its_own() {
 #[test]
 fn programs_that_cannot_be_are_refused_by_what_is_expected() {
     for (ring, options, expected) in [
-        ("rings/paper-12.toml", "arduino", "the ring file names no module; expected `module`"),
-        ("rings/hc-sr04-8.toml", "rust --board uno", "--board uno: expected none"),
+        ("rings/paper-12.toml", "arduino --way flow", "the ring file names no module; expected `module`"),
+        ("rings/hc-sr04-8.toml", "rust --way flow --board uno", "--board uno: expected none"),
         (
             "rings/hc-sr04-8.toml",
-            "micropython --board mega",
+            "micropython --way flow --board mega",
             "expected one that this program is written for: pico, esp32",
         ),
         (
@@ -65,7 +65,7 @@ fn programs_that_cannot_be_are_refused_by_what_is_expected() {
         ("tests/data/car-4.toml", "rust --mavlink", "--mavlink: expected --program arduino or c"),
         ("rings/hc-sr04-8.toml", "c --mavlink", "no places of sensors; expected poses"),
     ] {
-        let words = format!("design {ring} --places 1 --program {options}");
+        let words = format!("design {ring} --program {options}");
         let words: Vec<_> = words.split(' ').collect();
         let said = eeruf(&words);
         assert_eq!(said.code, Some(2), "{words:?}: {}", said.out);

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use crate::common::{Scratch, eeruf, json};
+use crate::common::{Scratch, eeruf};
 
 const ROOT: &str = env!("CARGO_MANIFEST_DIR");
 
@@ -54,20 +54,18 @@ pub(crate) const FORMS: [[&str; 3]; 2] =
     [["c", "eeruf_schedule", "EERUF_MODULES"], ["arduino", "RING", "RING_MODULES"]];
 
 #[test]
-fn recommended_ways_are_emitted_start_and_fire() {
+fn ways_are_emitted_start_and_fire() {
     let (mut flow, mut with_modules) = (0, 0);
     for ring in rings() {
         let ring = ring.to_str().unwrap();
         let [form, schedule, settings] = FORMS[usize::from(ring.ends_with("hc-sr04-8.toml"))];
-        let asked = ["design", ring, "--places", "1"];
+        let asked = ["design", ring, "--way", "flow"];
         let emitted = eeruf(&[&asked[..], &["--emit", form]].concat());
         assert_eq!(emitted.code, Some(0), "{ring}: {}", emitted.err);
         if form == "arduino" {
-            let recommended = json(&[&asked[..], &["--json"]].concat());
-            assert_eq!((&recommended["recommended"], flows(&emitted.out)), (&"flow".into(), true));
             // `emitted.rs` compiles that file.
             let rust = eeruf(&[&asked[..], &["--emit", "rust"]].concat()).out;
-            assert_eq!(rust, include_str!("emitted/flow_8.rs"), "eeruf design {ring} --places 1 --emit rust");
+            assert_eq!(rust, include_str!("emitted/flow_8.rs"), "eeruf design {ring} --way flow --emit rust");
         }
         let schedule = if flows(&emitted.out) && form == "c" { "eeruf_flow_config" } else { schedule };
         flow += u32::from(flows(&emitted.out));

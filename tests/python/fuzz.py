@@ -321,9 +321,9 @@ def calls(c: Chance) -> list[Callable[[], Any]]:
         lambda: RUNS[0].figures(),
         lambda: [*c.random.choice([ANY.experiments.alcoves, ANY.experiments.courses])(m(3), m(2))[:1]],
         lambda: ANY.experiments.rooms(m(RING_FILE), m(3), m(1), kind=m("hall"), driving=m(False), height=m("flat")),
-        # Judging takes a second for each place, and a minute for many, so no ring gets so far.
-        lambda: ANY.experiments.recommend(m("absent.toml"), places=m(1), first=m(0), driving=m(False), wrong=m(0.03)),
-        lambda: [*ANY.typing.Scenes(m("alcove"), m(range(3)), m("plain"))[:2]],
+        # Judging takes a second for each place, and a minute for many: no such ring gets so far.
+        lambda: ANY.experiments.recommend(m("absent.toml"), places=m(1), first=m(0), all_ways=m(False)),
+        lambda: [*ANY.experiments.Scenes(m("alcove"), m(range(3)), m("plain"))[:2]],
         lambda: ANY.sim.simulate(ROOM, method(c), 5).to_xarray(),
         lambda: READINGS[m(slice(1, 5))],
         lambda: ANY.sim.Readings.concat(m([READINGS, READINGS])),

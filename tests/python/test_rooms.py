@@ -20,18 +20,18 @@ def test_recommendation_is_the_programs() -> None:
     words = ["study", str(RING), "--places", "1", "--first", "7", "--json"]
     printed = subprocess.run([sys.executable, "-m", "eeruf", *words], capture_output=True, check=True).stdout
     assert answer == json.loads(printed)
-    names = [way["way"] for way in answer["ways"]]
-    assert names[0] == "sequential" and answer["recommended"] in names
+    ways = [way["way"] for kind in answer["kinds"] for way in kind["best"]]
+    assert answer["kinds"][0]["kind"] == "one by one" and answer["recommended"] in [*ways, "sequential"]
 
 
 def test_own_rooms_are_scenes_by_name() -> None:
     """They give the program's answer for the same rooms from files."""
     alcove = RING.parents[1] / "scenes" / "alcove-hc-sr04.toml"
-    answer = experiments.recommend(RING, rooms={alcove.stem: sim.Scene.read_toml(alcove)})
-    words = ["study", str(RING), "--rooms", str(alcove), "--json"]
+    answer = experiments.recommend(RING, rooms={alcove.stem: sim.Scene.read_toml(alcove)}, places=1, all_ways=True)
+    words = ["study", str(RING), "--rooms", str(alcove), "--places", "1", "--json"]
     printed = subprocess.run([sys.executable, "-m", "eeruf", *words], capture_output=True, check=False).stdout
     assert answer == json.loads(printed)
-    assert list(answer["ways"][0]["rooms"]) == [alcove.stem]
+    assert list(answer["kinds"][0]["best"][0]["rooms"]) == [alcove.stem]
 
 
 def test_rooms_are_scenes_of_the_rings_robot() -> None:

@@ -1,8 +1,8 @@
 //! Rooms in which a ring is judged.
 
-use eeruf_sim::experiments::rooms::{RoomGroup, RoomsOptions};
+use eeruf_sim::experiments::rooms::RoomGroup;
 
-/// Rooms and limits for judging ways of firing.
+/// Rooms for judging ways of firing.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RoomsAsked {
     /// The caller's own rooms; empty for the usual ones.
@@ -12,14 +12,12 @@ pub struct RoomsAsked {
     /// Number of the first room of each kind. The default is 0: ways are chosen on numbers below 2,000, and reported
     /// from 20,000 on.
     pub first: u64,
-    /// True for a robot that drives, at the ring's `speed_m_s` or 0.3 m/s.
-    pub driving: bool,
-    /// The largest share of foreign sound among believed readings that a recommended way may have. The default is 0.03.
-    pub wrong: f64,
+    /// True to measure every way, and what the answer would be beside others and with the other gain.
+    pub all: bool,
 }
 
 impl Default for RoomsAsked {
     fn default() -> Self {
-        Self { own: vec![], places: 6, first: 0, driving: false, wrong: RoomsOptions::default().wrong }
+        Self { own: vec![], places: 6, first: 0, all: false }
     }
 }

@@ -3,68 +3,97 @@
 
 use eeruf_sim::Robot;
 use eeruf_sim::experiments::measure::{
-    Cell, Condition, Costs, Estimate, Family, MeasureAsked, Measured, MeasuredWay, Moving, ONE_A_MINUTE, Operating,
-    Point, Setting, Speeds, Under, measure, measured_ways,
+    Cell, Condition, Costs, Estimate, Family, MeasureAsked, Measured, Moving, ONE_A_MINUTE, Operating, Point, RoomWay,
+    Setting, Speeds, Under, measure, with_other_gain,
 };
-use eeruf_sim::experiments::rooms::{RoomWay, with_other_gain};
-use serde::Serialize;
+use serde::{Serialize, Serializer};
 
 use crate::asked::RoomsAsked;
 use crate::find::RingDesign;
 use crate::ring::RingSpec;
+use crate::rooms::RoomRobot;
 use crate::way::Way;
 
-/// The rate of turn of a robot whose file has none, in degrees a second: a choice.
-const USUAL_TURN_DEG_S: f64 = 45.0;
 /// The number of the first room in which votes are chosen. They are not used for reports.
 pub const CHOICE: u64 = 1_000;
-/// Divisor of the number of rooms for choosing votes, and for conditions that the file does not name.
+/// Divisor of the number of rooms for conditions that the file does not name.
 const LESS: u64 = 3;
+/// Factor of the number of rooms for two ways that do not differ significantly.
+const MORE: u64 = 3;
 
-/// Ways of firing a ring, compared by cost.
+/// Ways of firing a ring, judged in rooms.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct CostAnswer {
-    /// The kind of way to recommend; none if no kind has a setting of at most one false stop a minute under each
-    /// condition.
-    pub recommended: Option<String>,
-    /// A cheaper kind that does not differ significantly from this one.
+pub struct RoomsAnswer {
+    /// The way to recommend; none if no way that a program has can fire the ring.
+    #[serde(rename = "recommended", serialize_with = "name")]
+    pub best: Option<RoomWay>,
+    /// True if it has at most one false stop a minute under each condition; else it has the fewest.
+    pub keeps: bool,
+    /// A kind of way that costs less, but not significantly.
     pub draw: Option<String>,
+    /// Assumptions where the ring file is silent, each a sentence without a full stop.
+    pub assumed: Vec<String>,
     /// The robot's speed in m/s.
     pub speed_m_s: f64,
     /// The rate of turn in degrees a second.
     pub turn_deg_s: f64,
-    /// The kinds of ways, the simplest first.
+    /// Number of rooms under each condition.
+    pub rooms: usize,
+    /// The recommended way under each condition.
+    pub conditions: Vec<UnderCondition>,
+    /// The best one by one under each condition, with any gap and votes.
+    pub baseline: Vec<JudgedWay>,
+    /// The kinds of ways, as programs have them, the simplest first.
     pub kinds: Vec<KindCost>,
-    /// The kind to recommend if the ring is used under one condition alone, or if its modules have the other gain.
+    /// The kind to recommend where the ring is used under one condition alone, or its modules have the other gain. Only
+    /// conditions that the ring file names are included unless everything was asked for.
     pub elsewhere: Vec<(String, Option<String>)>,
+    /// Every way under each condition, with the votes that serve it best, if everything was asked for.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub ways: Vec<JudgedWay>,
 }
 
-/// A kind of way.
+fn name<S: Serializer>(best: &Option<RoomWay>, serializer: S) -> Result<S::Ok, S::Error> {
+    best.as_ref().map(|best| best.name).serialize(serializer)
+}
+
+/// A kind of way: of those that a program has, the one that costs least in the rooms where votes are chosen.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct KindCost {
     /// The name.
     pub kind: String,
-    /// The cost: the geometric mean over the conditions of its t95, relative to the best one by one.
+    /// The cost: the geometric mean over the conditions of the mean time until a thing is seen, relative to the best
+    /// one by one; `None` if it has more than one false stop a minute under a condition.
     pub cost: Option<Estimate>,
-    /// The best way of this kind under each condition.
-    pub best: Vec<BestWay>,
+    /// The way under each condition; empty if no program has one.
+    pub best: Vec<JudgedWay>,
 }
 
-/// The best way of a kind under a condition.
+/// A way under a condition.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct BestWay {
+pub struct JudgedWay {
     /// The condition's name.
     pub condition: &'static str,
     /// The way's name.
     pub way: &'static str,
+    /// The way and its votes in words.
+    pub title: String,
     /// Votes that the way's readings need.
     pub votes: String,
-    /// False if the way has more than one false stop a minute in the rooms where votes were chosen; every way of its
-    /// kind then has.
+    /// False for more than one false stop a minute in the rooms where votes are chosen.
     pub keeps: bool,
     /// The figures.
     #[serde(flatten)]
     pub figures: Cell,
+    /// Share of time with an echo in which the belief is right, by kinds of rooms or the caller's; `None` without an
+    /// echo.
+    #[serde(serialize_with = "in_order")]
+    pub rooms: Vec<(String, Option<f64>)>,
+}
+
+/// Serializes rooms as an object whose keys keep their order.
+fn in_order<S: Serializer>(rooms: &[(String, Option<f64>)], serializer: S) -> Result<S::Ok, S::Error> {
+    serializer.collect_map(rooms.iter().map(|(name, right)| (name, right)))
 }
 
 /// A way under a condition, each figure with its 95 % interval.
@@ -92,83 +121,54 @@ struct Both {
     measured: Measured,
 }
 
+/// A way as programs have it: every reading that it accepts is believed.
+fn as_program(way: usize) -> Vec<Point> {
+    vec![Point { way, setting: Setting::ALL[0] }]
+}
+
 impl Both {
-    /// Returns the measurements under these conditions only.
-    fn under(&self, conditions: &[Condition]) -> Self {
-        let only = |of: &Measured| Measured {
-            ways: of.ways.clone(),
-            under: of.under.iter().filter(|under| conditions.contains(&under.condition)).cloned().collect(),
-        };
-        Self { chosen: only(&self.chosen), measured: only(&self.measured) }
+    /// The costs of the ways of some programs, relative to the best one by one.
+    fn costs(&self, programs: &[(Family, usize)]) -> Costs {
+        let groups: Vec<_> = programs.iter().map(|&(_, way)| as_program(way)).collect();
+        self.measured.costs(&self.chosen, &self.chosen.families()[0], &groups)
     }
 
-    fn costs(&self) -> Costs {
-        self.measured.costs(&self.chosen, &self.measured.families())
+    /// The kind to recommend under one condition alone, or under all.
+    fn recommended(&self, programs: &[(Family, usize)], condition: Option<Condition>) -> Option<String> {
+        let only = |of: &Measured| of.only(|it| condition.is_none_or(|condition| it == condition), |_| true);
+        let Self { chosen, measured } = self;
+        let costs = Self { chosen: only(chosen), measured: only(measured) }.costs(programs);
+        costs.recommended.map(|index| programs[index].0.to_string())
     }
 
-    fn recommended(&self) -> Option<String> {
-        self.costs().recommended.map(name_of)
-    }
-
-    fn best(&self, family: Family) -> Vec<BestWay> {
+    /// The best of some points under each condition.
+    fn judged(&self, points: &[Point]) -> Vec<JudgedWay> {
         let Self { chosen, measured } = self;
         let of = |(chooses, under): (&Under, &Under)| {
-            let operating = chooses.operating(chosen, |way| measured.ways[way].family == family, ONE_A_MINUTE)?;
-            let point = operating.point();
-            Some(BestWay {
+            let operating = chooses.operating(chosen, points, ONE_A_MINUTE)?;
+            let point @ Point { way, setting } = operating.point();
+            Some(JudgedWay {
                 condition: under.condition.as_str(),
-                way: measured.ways[point.way].way.name,
-                votes: point.setting.to_string(),
+                way: measured.ways[way].name,
+                title: measured.ways[way].in_words(setting),
+                votes: setting.to_string(),
                 keeps: matches!(operating, Operating::At(_)),
                 figures: under.cell(point, measured),
+                rooms: under.right_by_room(under.sights(point)),
             })
         };
         chosen.under.iter().zip(&measured.under).filter_map(of).collect()
     }
-}
 
-fn name_of(family: usize) -> String {
-    Family::ALL[family].to_string()
-}
-
-impl RingSpec {
-    /// The rate at which the ring's robot turns in rooms, in degrees a second: the file's, or else 45, a choice.
-    pub fn room_turn_deg_s(&self) -> f64 {
-        self.turn_deg_s.filter(|&deg_s| deg_s > 0.0).unwrap_or(USUAL_TURN_DEG_S)
-    }
-
-    /// The conditions under which the ring is used: standing, driving and turning, alone; and if the file says that
-    /// there are other robots, beside one of its make.
-    pub fn used_under(&self) -> &'static [Condition] {
-        if self.meets_others { &Condition::ALL } else { &Condition::ALL[..3] }
-    }
-
-    /// The figures of one way, which believes what it accepts, under the conditions in which the ring is used.
-    ///
-    /// `keep_going` is as for [`judge_in_rooms`](Self::judge_in_rooms).
-    ///
-    /// # Errors
-    /// A room in which the robot does not fit, or a stop by `keep_going`, in words.
-    pub fn way_in_rooms(
-        &self,
-        way: &RoomWay,
-        asked: &RoomsAsked,
-        keep_going: &(dyn Fn(f64) -> bool + Sync),
-    ) -> Result<Vec<UnderCondition>, String> {
-        let robot = Robot { odometry: true, ..way.robot.clone() };
-        let ways = [(MeasuredWay { family: Family::OneByOne, way: RoomWay { robot, ..way.clone() } }, None)];
-        let RoomsAsked { first, places, .. } = *asked;
-        let speeds = Speeds { speed_m_s: self.room_speed_m_s(), turn_rad_s: self.room_turn_deg_s().to_radians() };
-        let asked = MeasureAsked { conditions: self.used_under().into(), first, places, speeds };
-        let measured = measure(&ways, &asked, keep_going).map_err(|error| error.to_string())?;
-        let point = Point { way: 0, setting: Setting::ALL[0] };
-        let of = |under: &Under| {
-            let Cell { t95_ms, false_stops_per_min, .. } = under.cell(point, &measured);
+    /// A program's way under each condition.
+    fn conditions(&self, way: usize) -> Vec<UnderCondition> {
+        let of = |(under, judged): (&Under, JudgedWay)| {
+            let Cell { t95_ms, false_stops_per_min, .. } = judged.figures;
             let drives = under.condition.moving == Moving::Driving;
             let speed_m_s = under.places.iter().map(|place| place.speed_m_s).sum::<f64>() / under.places.len() as f64;
             let travel_m = |t95_ms: f64| 1e-3 * t95_ms * speed_m_s;
             UnderCondition {
-                condition: under.condition.as_str(),
+                condition: judged.condition,
                 t95_ms: t95_ms.value,
                 t95_ms_95: t95_ms.interval_95,
                 blind_travel_m: drives.then(|| travel_m(t95_ms.value)),
@@ -177,62 +177,150 @@ impl RingSpec {
                 false_stops_per_min_95: false_stops_per_min.interval_95,
             }
         };
-        Ok(measured.under.iter().map(of).collect())
+        self.measured.under.iter().zip(self.judged(&as_program(way))).map(of).collect()
+    }
+}
+
+/// The way of each family that a program has: of several, the one that costs least in the rooms where votes are chosen.
+fn with_program(spec: &RingSpec, chosen: &Measured) -> Vec<(Family, usize)> {
+    let fires =
+        |way: &RoomWay| Way::of(way).is_some_and(|of| of == Way::TwoPhases || spec.fired(of, &way.robot, 1).is_ok());
+    let programs: Vec<usize> = (0..chosen.ways.len()).filter(|&way| fires(&chosen.ways[way])).collect();
+    let groups: Vec<_> = programs.iter().map(|&way| as_program(way)).collect();
+    let costs = chosen.costs(chosen, &chosen.families()[0], &groups).costs;
+    let cost = |index: usize| costs[index].cost.map_or(f64::INFINITY, |cost| cost.value);
+    let of_family = |family: Family| {
+        let of = programs.iter().copied().enumerate().filter(|&(_, way)| chosen.ways[way].family == family);
+        of.min_by(|one, other| cost(one.0).total_cmp(&cost(other.0))).map(|(_, way)| (family, way))
+    };
+    Family::ALL.into_iter().filter_map(of_family).collect()
+}
+
+impl RingSpec {
+    /// The conditions under which the ring is used: standing, driving and turning, alone; and if the file says that
+    /// there are other robots, beside one of its make.
+    pub fn used_under(&self) -> &'static [Condition] {
+        if self.meets_others { &Condition::ALL } else { &Condition::ALL[..3] }
     }
 
     /// Judges the ways of firing the ring by their cost under the conditions in which it is used, with the schedule of
     /// two phases that was found for it.
     ///
-    /// `keep_going` is as for [`judge_in_rooms`](Self::judge_in_rooms).
+    /// `keep_going` is called by several threads with the finished share of the current part, 0 to 1; if it returns
+    /// `false`, the judgement stops.
     ///
     /// # Errors
-    /// A ring without places, or a stop by `keep_going`, in words.
-    pub fn cost_in_rooms(
+    /// A ring without places, a room in which its robot cannot be, and if it was stopped, in words.
+    pub fn judge_in_rooms(
         &self,
         design: Option<&RingDesign>,
         asked: &RoomsAsked,
         keep_going: &(dyn Fn(f64) -> bool + Sync),
-    ) -> Result<CostAnswer, String> {
-        let robot = design.map_or(self, |design| &design.spec).room_robot()?.robot;
+    ) -> Result<RoomsAnswer, String> {
+        // With the T_delta that the schedule needs where the robot moves.
+        let RoomRobot { robot, assumed } = design.map_or(self, |design| &design.spec).room_robot()?;
         let (speed_m_s, turn_deg_s) = (self.room_speed_m_s(), self.room_turn_deg_s());
         let speeds = Speeds { speed_m_s, turn_rad_s: turn_deg_s.to_radians() };
-        let run = |robot: &Robot, conditions: &[Condition], first, places| -> Result<Measured, String> {
-            let ways = measured_ways(robot, design.map(|design| &design.schedule)).into_iter();
-            // Except for one by one, only the ways that a program can use.
-            let has_program = |of: &MeasuredWay| of.family == Family::OneByOne || Way::of(&of.way).is_some();
-            let ways: Vec<_> = ways.filter(has_program).map(|way| (way, None)).collect();
-            let asked = MeasureAsked { conditions: conditions.into(), first, places, speeds };
+        // A loop that blocks is no better than one by one 33 ms apart.
+        let ways = |robot: &Robot| {
+            let mut ways = RoomWay::all(robot, design.map(|design| &design.schedule));
+            ways.retain(|way| asked.all || way.name != "blocking");
+            ways
+        };
+        let run = |ways: &[RoomWay], conditions: &[Condition], asked: &RoomsAsked| -> Result<Measured, String> {
+            let ways: Vec<_> = ways.iter().map(|way| (way.clone(), None)).collect();
+            let RoomsAsked { own, places, first, .. } = asked.clone();
+            let asked = MeasureAsked { conditions: conditions.into(), own, first, places, speeds };
             measure(&ways, &asked, keep_going).map_err(|error| error.to_string())
         };
-        let (used, fewer) = (self.used_under(), asked.places.div_ceil(LESS));
-        let here =
-            Both { chosen: run(&robot, used, CHOICE, fewer)?, measured: run(&robot, used, asked.first, asked.places)? };
-        let Costs { costs, recommended, draw } = here.costs();
-        let kinds = Family::ALL.into_iter().zip(costs).map(|(family, cost)| KindCost {
-            kind: family.to_string(),
-            cost: cost.cost,
-            best: here.best(family),
+        // In rooms of the caller's own there is no other robot.
+        let used = if asked.own.is_empty() { self.used_under() } else { &Condition::ALL[..3] };
+        let choice = RoomsAsked { own: vec![], first: CHOICE, ..asked.clone() };
+        let chosen = run(&ways(&robot), used, &choice)?;
+        let programs = with_program(design.map_or(self, |design| &design.spec), &chosen);
+        // Without the rest of the ways: the best one by one, and what a program has.
+        let one_by_one =
+            chosen.under.iter().filter_map(|of| of.operating(&chosen, &chosen.families()[0], ONE_A_MINUTE));
+        let kept: Vec<usize> =
+            one_by_one.map(|of| of.point().way).chain(programs.iter().map(|&(_, way)| way)).collect();
+        let (chosen, programs) = if asked.all { (chosen, programs) } else { only(&chosen, &programs, &kept) };
+        let measured = run(&chosen.ways, used, asked)?;
+        let here = Both { chosen, measured };
+        let Costs { costs, mut recommended, mut draw } = here.costs(&programs);
+        if let (Some(one), Some(other), true) = (recommended, draw, asked.own.is_empty()) {
+            // Two that overlap are compared in more rooms.
+            let two = [programs[one], programs[other]];
+            let (chosen, two) = only(&here.chosen, &two, &two.map(|(_, way)| way));
+            let ways: Vec<usize> = [one, other].map(|index| programs[index].1).into();
+            let mut measured = here.measured.only(|_| true, |way| ways.contains(&way));
+            let first = asked.first.saturating_add(asked.places);
+            let more = RoomsAsked { first, places: asked.places * (MORE - 1), ..asked.clone() };
+            measured.add(run(&measured.ways, used, &more)?);
+            let groups: Vec<_> = two.iter().map(|&(_, way)| as_program(way)).collect();
+            let costs = measured.costs(&chosen, &groups[0], &groups);
+            recommended = costs.recommended.map(|index| [one, other][index]);
+            draw = costs.draw.map(|index| [one, other][index]);
+        }
+        let kind_of = |family: Family| {
+            let index = programs.iter().position(|of| of.0 == family);
+            KindCost {
+                kind: family.to_string(),
+                cost: index.and_then(|index| costs[index].cost),
+                best: index.map_or_else(Vec::new, |index| here.judged(&as_program(programs[index].1))),
+            }
+        };
+        let kinds: Vec<_> = Family::ALL.into_iter().map(kind_of).collect();
+        // Where none keeps to one a minute, the fewest false stops.
+        let stops = |&&(family, _): &&(Family, usize)| {
+            let of = kinds.iter().filter(|kind| kind.kind == family.to_string()).flat_map(|kind| &kind.best);
+            of.map(|best| best.figures.false_stops_per_min.value).sum::<f64>()
+        };
+        let fires = |of: &&(Family, usize)| here.measured.under.iter().all(|under| under.sights[of.1].is_ok());
+        let best = recommended.map(|index| programs[index]).or_else(|| {
+            let fewest = programs.iter().filter(fires).min_by(|one, other| stops(one).total_cmp(&stops(other)));
+            fewest.copied()
         });
-        // Only the name is used, so votes are chosen in the measured rooms.
-        let there = |robot: &Robot, conditions: &[Condition]| -> Result<Both, String> {
-            let measured = run(robot, conditions, asked.first, fewer)?;
-            Ok(Both { chosen: measured.clone(), measured })
-        };
-        let unused: Vec<_> = Condition::ALL.into_iter().filter(|condition| !used.contains(condition)).collect();
-        let unused = if unused.is_empty() { None } else { Some(there(&robot, &unused)?) };
-        let alone = |condition: Condition| {
-            let of = if used.contains(&condition) { Some(&here) } else { unused.as_ref() };
-            (condition.as_str().to_owned(), of.and_then(|of| of.under(&[condition]).recommended()))
-        };
-        let mut elsewhere: Vec<_> = Condition::ALL.into_iter().map(alone).collect();
-        elsewhere.push(("other gain".to_owned(), there(&with_other_gain(&robot), used)?.recommended()));
-        Ok(CostAnswer {
-            recommended: recommended.map(name_of),
-            draw: draw.map(name_of),
+        let named = |condition: Condition| condition.as_str().to_owned();
+        let alone = |both: &Both, under| (named(under), both.recommended(&programs, Some(under)));
+        let mut elsewhere: Vec<_> = used.iter().map(|&under| alone(&here, under)).collect();
+        let mut every = vec![];
+        if asked.all {
+            let of_way = |way| here.judged(&here.measured.points(|of| of == way));
+            every = (0..here.measured.ways.len()).flat_map(of_way).collect();
+            // Only named, and so chosen where it is measured.
+            let fewer = RoomsAsked { places: asked.places.div_ceil(LESS), ..asked.clone() };
+            let there = |robot: &Robot, conditions: &[Condition]| -> Result<Both, String> {
+                let measured = run(&ways(robot), conditions, &fewer)?;
+                Ok(Both { chosen: measured.clone(), measured })
+            };
+            let unused: Vec<_> = Condition::ALL.into_iter().filter(|condition| !used.contains(condition)).collect();
+            if !unused.is_empty() && asked.own.is_empty() {
+                let there = there(&robot, &unused)?;
+                elsewhere.extend(unused.iter().map(|&under| alone(&there, under)));
+            }
+            let other = there(&with_other_gain(&robot), used)?;
+            elsewhere.push(("other gain".to_owned(), other.recommended(&programs, None)));
+        }
+        Ok(RoomsAnswer {
+            keeps: recommended.is_some(),
+            draw: draw.map(|index| programs[index].0.to_string()),
+            assumed,
             speed_m_s,
             turn_deg_s,
-            kinds: kinds.collect(),
+            rooms: here.measured.under.first().map_or(0, |under| under.places.len()),
+            conditions: best.map_or_else(Vec::new, |(_, way)| here.conditions(way)),
+            baseline: here.judged(&here.chosen.families()[0]),
+            best: best.map(|(_, way)| here.measured.ways[way].clone()),
+            kinds,
             elsewhere,
+            ways: every,
         })
     }
+}
+
+/// The measurement of some of the ways, with programs numbered anew.
+fn only(chosen: &Measured, programs: &[(Family, usize)], kept: &[usize]) -> (Measured, Vec<(Family, usize)>) {
+    let index = |way: usize| (0..way).filter(|way| kept.contains(way)).count();
+    let programs = programs.iter().map(|&(family, way)| (family, index(way))).collect();
+    (chosen.only(|_| true, |way| kept.contains(&way)), programs)
 }

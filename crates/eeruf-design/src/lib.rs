@@ -79,9 +79,9 @@ pub use what_if::WhatIf;
 #[cfg(feature = "rooms")]
 pub use {
     asked::RoomsAsked,
-    cost::{BestWay, CHOICE, CostAnswer, KindCost, UnderCondition},
+    cost::{CHOICE, JudgedWay, KindCost, RoomsAnswer, UnderCondition},
     flow::{FlowDesign, needs_to_see_m, turns_of},
-    rooms::{RoomRobot, RoomsAnswer, RoomsJson},
+    rooms::RoomRobot,
     way::{How, Way},
 };
 

@@ -1,24 +1,16 @@
-//! A ring file's ways of firing, judged in rooms, as the program, the page and Python print them.
+//! The robot of a ring file, as it is judged in rooms.
 
 use core::f64::consts::TAU;
 
 use eeruf_core::Layout;
 use eeruf_core::search::SearchError;
-use eeruf_sim::experiments::ExperimentError;
-use eeruf_sim::experiments::rooms::{
-    Condition, JudgedWay, Judgement, RoomFigures, RoomGroup, RoomKind, RoomWay, RoomsOptions, judge,
-};
 use eeruf_sim::modules::POLAROID_6500;
 use eeruf_sim::{Pose, Robot, Transducer};
-use serde::{Serialize, Serializer};
 
-use crate::asked::RoomsAsked;
 use crate::atlas::ATLAS;
-use crate::cost::CostAnswer;
 use crate::find::{NoDesign, RingDesign};
 use crate::ring::RingSpec;
 use crate::shortest::Effort;
-use crate::way::Way;
 
 /// Radius, in metres, of a ring whose file gives no places: a choice, that of a small robot.
 const RADIUS_M: f64 = 0.2;
@@ -71,29 +63,10 @@ impl RingSpec {
     }
 }
 
-/// Ways of firing a ring, judged in rooms, and the assumptions of the answer.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RoomsAnswer {
-    /// The judgement.
-    pub judgement: Judgement,
-    /// The names of the groups of rooms, and the number of rooms in each.
-    pub groups: Vec<(String, usize)>,
-    /// Assumptions about values that the ring file does not give, each a sentence without a full stop.
-    pub assumed: Vec<String>,
-    /// The robot's speed in m/s.
-    pub speed_m_s: f64,
-    /// The requested limit of the share of foreign sound.
-    pub wrong: f64,
-    /// Judgements under other conditions, in a third of the rooms; fewer than three if the judging was stopped.
-    pub elsewhere: Vec<(Condition, Judgement)>,
-    /// The ways compared by cost, if [requested](RingSpec::cost_in_rooms).
-    pub by_cost: Option<CostAnswer>,
-}
-
 /// The speed of a robot whose ring file has none, in m/s: a choice.
 const USUAL_SPEED_M_S: f64 = 0.3;
-/// Divisor of the number of rooms under the other conditions.
-const LESS_ELSEWHERE: usize = 3;
+/// The rate of turn of a robot whose file has none, in degrees a second: a choice.
+const USUAL_TURN_DEG_S: f64 = 45.0;
 
 /// Budget of nodes for the schedule of two phases in the judgement.
 const STUDY_BUDGET: u64 = 200_000;
@@ -104,7 +77,12 @@ impl RingSpec {
         self.speed_mm_s.filter(|&mm| mm > 0).map_or(USUAL_SPEED_M_S, |mm| f64::from(mm) / 1e3)
     }
 
-    /// A short schedule of two phases, proven or not, for judging it in rooms; `None` if there is none.
+    /// The rate at which its robot turns in rooms, in degrees a second: the ring's, or 45, a choice.
+    pub fn room_turn_deg_s(&self) -> f64 {
+        self.turn_deg_s.filter(|&deg_s| deg_s > 0.0).unwrap_or(USUAL_TURN_DEG_S)
+    }
+
+    /// A short schedule of two phases, proven or not, for judging it in rooms; none where there is none.
     ///
     /// # Errors
     /// As for [`RingSpec::shortest`].
@@ -115,169 +93,6 @@ impl RingSpec {
             found => Ok(found.ok()),
         }
     }
-
-    /// Judges the ways of firing the ring, with the schedule of two phases that was found for it.
-    ///
-    /// Several threads call `keep_going` with the finished share of the current part; if it returns `false`, the
-    /// judgement stops.
-    ///
-    /// # Errors
-    /// A ring without places, no rooms, or a stop before the first judgement was complete, in words.
-    pub fn judge_in_rooms(
-        &self,
-        design: Option<&RingDesign>,
-        asked: &RoomsAsked,
-        keep_going: &(dyn Fn(f64) -> bool + Sync),
-    ) -> Result<RoomsAnswer, String> {
-        let Set { ways, groups, here, assumed } = self.set(design, asked)?;
-        let judgement = judge(&ways, &groups, &here, keep_going).map_err(in_words)?;
-        let fewer: Vec<_> = groups
-            .iter()
-            .map(|RoomGroup { name, rooms }| RoomGroup {
-                name: name.clone(),
-                rooms: rooms.iter().step_by(LESS_ELSEWHERE).cloned().collect(),
-            })
-            .collect();
-        let mut elsewhere = vec![];
-        for condition in &Condition::ALL[1..] {
-            match judge(&ways, &fewer, &RoomsOptions { condition: *condition, ..here.clone() }, keep_going) {
-                Ok(judgement) => elsewhere.push((*condition, judgement)),
-                Err(_) => break,
-            }
-        }
-        let groups = groups.into_iter().map(|group| (group.name, group.rooms.len())).collect();
-        let (speed_m_s, wrong) = (here.speed_m_s, asked.wrong);
-        Ok(RoomsAnswer { judgement, groups, assumed, speed_m_s, wrong, elsewhere, by_cost: None })
-    }
-}
-
-impl RingSpec {
-    /// The way of firing the ring that [`judge_in_rooms`](Self::judge_in_rooms) recommends among those that a program
-    /// can use, without judging other conditions; `None` if no way can fire it.
-    ///
-    /// # Errors
-    /// See [`judge_in_rooms`](Self::judge_in_rooms).
-    pub fn recommended_in_rooms(
-        &self,
-        design: Option<&RingDesign>,
-        asked: &RoomsAsked,
-        keep_going: &(dyn Fn(f64) -> bool + Sync),
-    ) -> Result<Option<RoomWay>, String> {
-        let Set { mut ways, groups, here, .. } = self.set(design, asked)?;
-        ways.retain(|way| Way::of(way).is_some());
-        let judgement = judge(&ways, &groups, &here, keep_going).map_err(in_words)?;
-        Ok(judgement.best().map(|judged| judged.way.clone()))
-    }
-
-    fn set(&self, design: Option<&RingDesign>, asked: &RoomsAsked) -> Result<Set, String> {
-        // With the T_delta that the schedule needs if the robot moves.
-        let spec = design.map_or(self, |design| &design.spec);
-        let RoomRobot { robot, assumed } = spec.room_robot()?;
-        let here = RoomsOptions {
-            speed_m_s: if asked.driving { spec.room_speed_m_s() } else { 0.0 },
-            wrong: asked.wrong,
-            ..RoomsOptions::default()
-        };
-        let numbers = asked.first..asked.first.saturating_add(asked.places);
-        let of_kind = |kind| RoomGroup::of_kind(kind, numbers.clone(), robot.radius_m());
-        let groups = if asked.own.is_empty() { RoomKind::ALL.map(of_kind).into() } else { asked.own.clone() };
-        Ok(Set { ways: RoomWay::all(&robot, design.map(|design| &design.schedule)), groups, here, assumed })
-    }
-}
-
-/// Rooms and the ways that are judged in them.
-struct Set {
-    ways: Vec<RoomWay>,
-    groups: Vec<RoomGroup>,
-    here: RoomsOptions,
-    assumed: Vec<String>,
-}
-
-fn in_words(error: ExperimentError) -> String {
-    match error {
-        ExperimentError::Stopped => "stopped before the rooms were judged".to_owned(),
-        error => error.to_string(),
-    }
-}
-
-impl RoomsAnswer {
-    /// The answer in its JSON form.
-    pub fn json(&self) -> RoomsJson<'_> {
-        let ways = |judgement| ways_of(&self.groups, judgement);
-        let elsewhere = self.elsewhere.iter().map(|(condition, judgement)| ElsewhereJson {
-            condition: *condition,
-            recommended: name_of(judgement),
-            keeps: judgement.keeps,
-            ways: ways(judgement),
-        });
-        RoomsJson {
-            recommended: name_of(&self.judgement),
-            keeps: self.judgement.keeps,
-            assumed: &self.assumed,
-            ways: ways(&self.judgement),
-            elsewhere: elsewhere.collect(),
-            by_cost: self.by_cost.as_ref(),
-        }
-    }
-}
-
-fn name_of(judgement: &Judgement) -> Option<&'static str> {
-    judgement.best().map(|way| way.way.name)
-}
-
-/// Ways of firing judged in rooms, as JSON.
-#[derive(Debug, Serialize)]
-pub struct RoomsJson<'a> {
-    /// The name of the way to recommend.
-    pub recommended: Option<&'static str>,
-    /// True if the way keeps to the limits in each kind of room.
-    pub keeps: bool,
-    /// Assumptions about values that the ring file does not give.
-    pub assumed: &'a [String],
-    ways: Vec<WayJson<'a>>,
-    elsewhere: Vec<ElsewhereJson<'a>>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    by_cost: Option<&'a CostAnswer>,
-}
-
-#[derive(Debug, Serialize)]
-struct ElsewhereJson<'a> {
-    condition: Condition,
-    recommended: Option<&'static str>,
-    keeps: bool,
-    ways: Vec<WayJson<'a>>,
-}
-
-#[derive(Debug, Serialize)]
-struct WayJson<'a> {
-    way: &'static str,
-    title: &'static str,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    not_possible: Option<&'a String>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    blind_90: Option<[f64; 2]>,
-    #[serde(skip_serializing_if = "Option::is_none")]
-    times_95: Option<[f64; 2]>,
-    #[serde(serialize_with = "in_order")]
-    rooms: Vec<(&'a str, &'a RoomFigures)>,
-}
-
-/// Serializes an object whose keys keep the order of the rooms.
-fn in_order<S: Serializer>(rooms: &[(&str, &RoomFigures)], serializer: S) -> Result<S::Ok, S::Error> {
-    serializer.collect_map(rooms.iter().copied())
-}
-
-/// The ways of a judgement, each with its figures by the names of rooms.
-fn ways_of<'a>(groups: &'a [(String, usize)], judgement: &'a Judgement) -> Vec<WayJson<'a>> {
-    let way = |way: &'a JudgedWay| WayJson {
-        way: way.way.name,
-        title: way.way.title(),
-        not_possible: way.rooms.as_ref().err(),
-        blind_90: way.rooms.is_ok().then_some(way.blind_90),
-        times_95: way.times_95,
-        rooms: groups.iter().map(|(name, _)| &**name).zip(way.rooms.iter().flatten()).collect(),
-    };
-    judgement.ways.iter().map(way).collect()
 }
 
 #[cfg(test)]

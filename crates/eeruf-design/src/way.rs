@@ -2,9 +2,9 @@
 
 use eeruf_core::flow::{InTurn, TurnSettings, Votes};
 use eeruf_core::plan::Plan as _;
-use eeruf_core::{EachSensor, Instant, MAX_SENSORS, SensorLimits};
+use eeruf_core::{EachSensor, Instant, MAX_SENSORS, Micros, SensorLimits};
 use eeruf_sim::Robot;
-use eeruf_sim::experiments::rooms::RoomWay;
+use eeruf_sim::experiments::measure::RoomWay;
 use eeruf_sim::methods::Method;
 use serde::Serialize;
 
@@ -67,11 +67,11 @@ impl Way {
 
     /// The way of a program that corresponds to one judged in rooms; `None` if there is none.
     pub fn of(way: &RoomWay) -> Option<Self> {
-        match (way.method, way.name) {
-            (Method::Sequential, _) => Some(Self::Sequential),
-            (Method::FarGroups, _) => Some(Self::Groups),
-            (Method::Eeruf, "eeruf") => Some(Self::TwoPhases),
-            (Method::Flow, _) => Some(Self::Flow),
+        match way.method {
+            Method::Sequential | Method::Table => Some(Self::Sequential),
+            Method::FarGroups => Some(Self::Groups),
+            Method::Eeruf => Some(Self::TwoPhases),
+            Method::Flow => Some(Self::Flow),
             _ => None,
         }
     }
@@ -141,6 +141,9 @@ impl RingSpec {
             Way::Flow => self.flow_of(&robot.clone().by_flow(), seed),
             _ => self.flow_of(robot, seed),
         };
+        if let (Way::Sequential, Some(table)) = (way, &robot.firing.table) {
+            flow.turns.most = Micros::new(table.period.as_micros() / robot.sensors.len().max(1) as u32);
+        }
         if matches!(way, Way::Sequential | Way::Groups) {
             flow.turns = flow.turns.one_by_one();
             flow.belief.votes = Votes::EveryEcho;
@@ -198,7 +201,9 @@ mod tests {
         let groups = how("far_groups").unwrap();
         assert_eq!(groups.groups, [[0, 4], [1, 5], [2, 6], [3, 7]]);
         assert_eq!((groups.order.len(), groups.votes), (8, "every_echo"));
-        assert_eq!(how("arrays"), None);
+        assert_eq!(how("blocking"), None);
+        // Gaps are those that were measured.
+        assert_eq!(how("one_by_one_20ms").and_then(|how| how.gaps_us), Some([20_000; 2]));
     }
 
     #[test]

@@ -195,9 +195,7 @@ pub(crate) struct InRooms<'py> {
     rooms: Option<Bound<'py, PyAny>>,
     places: Bound<'py, PyAny>,
     first: Bound<'py, PyAny>,
-    driving: Bound<'py, PyAny>,
-    wrong: Bound<'py, PyAny>,
-    cost: Bound<'py, PyAny>,
+    all_ways: Bound<'py, PyAny>,
 }
 
 /// Judges ways of firing a ring file's ring in rooms, as `eeruf study RING.toml --json` prints them.
@@ -210,25 +208,18 @@ pub(crate) fn recommend(
     progress: Option<&Bound<'_, PyAny>>,
 ) -> PyResult<String> {
     let spec = ring_file(ring)?;
-    let InRooms { rooms, places, first, driving, wrong, cost } = asked;
-    let cost = flag("cost", Some(&cost), false)?;
+    let InRooms { rooms, places, first, all_ways } = asked;
     let asked = RoomsAsked {
         own: rooms.as_ref().map(own_rooms).transpose()?.unwrap_or_default(),
         places: whole("places", &places, 1..=1000)?,
         first: whole("first", &first, 0..=1_000_000_000)?,
-        driving: flag("driving", Some(&driving), false)?,
-        wrong: number("wrong", &wrong, 0.0..=1.0)?,
+        all: flag("all_ways", Some(&all_ways), false)?,
     };
     in_background(py, progress, move |background| {
         let design = spec.shortest_to_study().map_err(|error| EerufError::new_err(error.to_string()))?;
         let keep_going = |done| background.go_on(Some(done), || "rooms".to_owned());
         let judged = spec.judge_in_rooms(design.as_ref(), &asked, &keep_going);
-        let mut answer = judged.map_err(EerufError::new_err)?;
-        // Nothing appears in the caller's own rooms.
-        if cost && asked.own.is_empty() {
-            answer.by_cost = spec.cost_in_rooms(design.as_ref(), &asked, &keep_going).ok();
-        }
-        json(&answer.json())
+        json(&judged.map_err(EerufError::new_err)?)
     })
 }
 

@@ -76,7 +76,7 @@ pub(crate) fn blind_sensors(lanes: &[(Method, Vec<f64>)]) -> Picture {
     let cell = ((WIDTH - LEFT) / sensors.max(1) as f64).min(90.0);
     let mut picture = Picture::new(WIDTH, TOP + LANE * lanes.len() as f64 + 20.0);
     picture.text("Blind sensors (red): right in under 5 % of their firings", (16.0, 22.0), TITLE);
-    picture.text("sensor; firings that are right, %; flow is the way recommended", (LEFT, 58.0), CAPTION);
+    picture.text("sensor; firings that are right, %", (LEFT, 58.0), CAPTION);
     for sensor in 0..sensors {
         let x = LEFT + cell * (sensor as f64 + 0.5);
         picture.text_in((sensor + 1).to_string(), (x, 84.0), SMALL, HPos::Center, INK);

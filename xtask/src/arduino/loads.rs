@@ -179,8 +179,8 @@ fn sketch(library: &Path, modules: usize, polled: bool) -> Result<build::Sketch>
     let ring = folder.join("ring.toml");
     fs::write(&ring, fs::read_to_string(RING)?.replace("sensors = 8", &format!("sensors = {modules}")))?;
     let emitted =
-        output(Command::new(program()?).arg("design").arg(ring).args(["--places", "1", "--emit", "arduino"]))?;
-    ensure!(emitted.contains("EerufFlowConfig RING"), "{RING}: flow is not recommended:\n{emitted}");
+        output(Command::new(program()?).arg("design").arg(ring).args(["--way", "flow", "--emit", "arduino"]))?;
+    ensure!(emitted.contains("EerufFlowConfig RING"), "{RING}: not by flow:\n{emitted}");
     fs::write(folder.join("ring.h"), emitted)?;
     build::ours(
         library,

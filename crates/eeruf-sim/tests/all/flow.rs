@@ -6,7 +6,8 @@ use eeruf_core::{
     Micros,
     flow::{BeliefSettings, Votes},
 };
-use eeruf_sim::experiments::rooms::{RoomKind, RoomPlan, RoomWay};
+use eeruf_sim::experiments::measure::RoomWay;
+use eeruf_sim::experiments::rooms::{RoomKind, RoomPlan};
 use eeruf_sim::modules::HC_SR04;
 use eeruf_sim::*;
 
@@ -26,7 +27,8 @@ const STANDS: Moves = (0.0, 0.0);
 fn way(name: &str) -> RoomWay {
     let ring = Robot::ring(Pose::identity(), 8, TAU / 8.0, 0.2, Transducer::HC_SR04).with_modules(vec![HC_SR04; 8]);
     let robot = Robot { window: Micros::new(23_311), ..ring };
-    RoomWay::all(&robot, None).into_iter().find(|way| way.name == name).unwrap()
+    let way = RoomWay::all(&robot, None).into_iter().find(|way| way.name == name).unwrap();
+    RoomWay { robot: Robot { odometry: false, ..way.robot }, ..way }
 }
 
 fn run(way: &RoomWay, kinds: &[RoomKind], rooms: u64, (speed_m_s, turn_deg_s): Moves) -> FlowFigures {

@@ -3,10 +3,8 @@
 use std::f64::consts::TAU;
 
 use eeruf_sim::experiments::measure::{
-    Cell, Condition, Control, MeasureAsked, Measured, MeasuredWay, NEVER_S, ONE_A_MINUTE, Point, Setting, Speeds,
-    measure, measured_ways,
+    Cell, Condition, Control, MeasureAsked, Measured, NEVER_S, ONE_A_MINUTE, Point, RoomWay, Setting, Speeds, measure,
 };
-use eeruf_sim::experiments::rooms::RoomWay;
 use eeruf_sim::modules::HC_SR04;
 use eeruf_sim::{Method, Pose, Robot, Transducer};
 
@@ -17,12 +15,12 @@ fn robot() -> Robot {
     Robot { window: eeruf_core::Micros::new(23_311), ..ring.with_modules(vec![HC_SR04; 8]) }
 }
 
-fn way(name: &str) -> MeasuredWay {
-    measured_ways(&robot(), None).into_iter().find(|way| way.way.name == name).unwrap()
+fn way(name: &str) -> RoomWay {
+    RoomWay::all(&robot(), None).into_iter().find(|way| way.name == name).unwrap()
 }
 
-fn run(ways: &[(MeasuredWay, Option<Control>)], conditions: &[Condition], first: u64, places: u64) -> Measured {
-    let asked = MeasureAsked { conditions: conditions.into(), first, places, speeds: SPEEDS };
+fn run(ways: &[(RoomWay, Option<Control>)], conditions: &[Condition], first: u64, places: u64) -> Measured {
+    let asked = MeasureAsked { conditions: conditions.into(), own: vec![], first, places, speeds: SPEEDS };
     measure(ways, &asked, &|_| true).unwrap()
 }
 
@@ -32,8 +30,7 @@ const EAGER: Setting = Setting::Votes { m: 1, n: 1 };
 fn controls_rank_as_they_must_in_every_condition() {
     let sound = way("one_by_one_33ms");
     let quick = way("one_by_one_10ms");
-    let at_once = RoomWay { name: "simultaneous", method: Method::Simultaneous, ..way("sequential").way };
-    let at_once = MeasuredWay { way: at_once, ..sound.clone() };
+    let at_once = RoomWay { name: "simultaneous", method: Method::Simultaneous, ..way("sequential") };
     let ways = [
         (sound.clone(), None),
         (sound.clone(), Some(Control::Never)),
@@ -73,13 +70,14 @@ fn sound_way_is_recommended_over_planted_ones() {
     let ways: Vec<_> = controls.map(|control| (sound.clone(), control)).collect();
     let alone = &Condition::ALL[..3];
     let (chosen, measured) = (run(&ways, alone, 0, 5), run(&ways, alone, 22_000, 5));
+    let at = |of: usize| measured.points(|way| way == of);
     for (planted, control) in Control::PLANTED.iter().enumerate() {
-        // The planted way comes first, as the simpler one.
-        let costs = measured.costs(&chosen, &[vec![planted], vec![3]]);
+        // The planted one stands first, as the simpler.
+        let costs = measured.costs(&chosen, &at(3), &[at(planted), at(3)]);
         assert_eq!(costs.recommended, Some(1), "{control:?}: {costs:?}");
     }
-    // Two equal ways are a draw, and the first is recommended.
-    let same = measured.costs(&chosen, &[vec![3], vec![3]]);
+    // A way is a draw with itself, and the first is taken.
+    let same = measured.costs(&chosen, &at(3), &[at(3), at(3)]);
     assert_eq!((same.recommended, same.draw), (Some(0), None));
 }
 

@@ -1,10 +1,11 @@
 //! Confidence intervals by bootstrap over rooms.
 
-use super::trial::NEVER_S;
 use crate::{results::quantile, world::Random};
 
 /// Number of bootstrap samples.
 const TIMES: u64 = 2000;
+/// A cost counts a thing that is seen later, or never, as seen after this time: a choice.
+const LATE_MS: f64 = 1_000.0;
 
 /// An estimate with its 95 % interval.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize)]
@@ -84,7 +85,19 @@ impl Latencies {
         found.map_or(f64::INFINITY, |of| of.0)
     }
 
-    /// Returns the share of things that are never seen.
+    /// The mean time until a thing is seen, at most a second each, with these weights of rooms. Unlike the 95th
+    /// percentile it does not jump where about one thing in twenty is never seen.
+    pub(super) fn mean_ms(&self, counts: &[u16]) -> f64 {
+        let (mut all, mut sum_ms) = (0.0, 0.0);
+        for &(latency_ms, room) in &self.0 {
+            let count = counts.get(room).map_or(0.0, |&count| f64::from(count));
+            all += count;
+            sum_ms += count * latency_ms.min(LATE_MS);
+        }
+        if all > 0.0 { sum_ms / all } else { LATE_MS }
+    }
+
+    /// The share that is never seen.
     pub(super) fn never(&self) -> f64 {
         self.0.iter().filter(|of| of.0.is_infinite()).count() as f64 / self.0.len().max(1) as f64
     }
@@ -93,12 +106,6 @@ impl Latencies {
     pub(super) fn len(&self) -> usize {
         self.0.len()
     }
-}
-
-/// Returns a 95th percentile as it counts in a cost: things never seen count as seen after 5 s, so that two ways that
-/// both miss one in twenty are equal.
-pub(super) fn capped_ms(t95_ms: f64) -> f64 {
-    t95_ms.min(1e3 * NEVER_S)
 }
 
 #[cfg(test)]
@@ -110,7 +117,10 @@ mod tests {
         let of = |never: usize| Latencies::new((0..100).map(|k| if k < never { f64::INFINITY } else { k as f64 }));
         assert_eq!((of(0).t95_ms(&[1; 100]), of(5).t95_ms(&[1; 100])), (94.0, 99.0));
         assert_eq!((of(6).t95_ms(&[1; 100]), of(6).never()), (f64::INFINITY, 0.06));
-        // A room without a thing does not count; a room drawn twice counts twice.
+        // Where it jumps, a mean moves by a hundredth of a second at most.
+        assert!((of(6).mean_ms(&[1; 100]) - of(5).mean_ms(&[1; 100]) - 9.95).abs() < 1e-9);
+        assert_eq!(Latencies::new([f64::NAN].into_iter()).mean_ms(&[1]), 1_000.0);
+        // A room without a thing does not count; one drawn twice counts twice.
         let three = Latencies::new([30.0, f64::NAN, 10.0].into_iter());
         assert_eq!((three.len(), three.t95_ms(&[1, 9, 1]), three.t95_ms(&[0, 9, 2])), (2, 30.0, 10.0));
     }

@@ -2,12 +2,12 @@
 
 use serde::Serialize;
 
-use super::bootstrap::{Bootstrap, Estimate, Latencies, capped_ms};
+use super::bootstrap::{Bootstrap, Estimate, Latencies};
 use super::run::{Measured, Under};
 use super::sight::Sight;
 use super::trial::Condition;
 use super::votes::Setting;
-use super::ways::{Family, MeasuredWay};
+use super::ways::Family;
 
 /// Largest rate of false stops, per minute, at which ways are compared.
 pub const ONE_A_MINUTE: f64 = 1.0;
@@ -27,7 +27,7 @@ pub struct Point {
 /// The setting at which a family is used under a condition, chosen in rooms that are not reported.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Operating {
-    /// The setting of least t95 with no more false stops than asked for.
+    /// The least mean time until a thing is seen with no more false stops than asked for.
     At(Point),
     /// No setting has few enough false stops; this setting has the fewest.
     None(Point),
@@ -50,6 +50,8 @@ pub struct Cell {
     pub t50_t90_ms: [f64; 2],
     /// The time in which 95 % of the things are seen, in ms; infinite if fewer are.
     pub t95_ms: Estimate,
+    /// The mean time until a thing is seen, at most a second each, in ms.
+    pub mean_ms: Estimate,
     /// The share of things that are never seen.
     pub never: f64,
     /// Number of false stops.
@@ -69,34 +71,30 @@ pub struct Cell {
 }
 
 impl Under {
-    /// Returns the settings of those ways that can fire the ring. Only one by one has a median.
-    fn points(&self, measured: &Measured, ways: impl Fn(usize) -> bool) -> Vec<Point> {
-        let of_way = |(way, of): (usize, &MeasuredWay)| {
-            let fits = |it: &Setting| of.family == Family::OneByOne || *it != Setting::Median;
-            Setting::ALL.into_iter().filter(fits).map(move |setting| Point { way, setting }).collect::<Vec<_>>()
-        };
-        let fired = measured.ways.iter().enumerate().filter(|&(way, _)| ways(way) && self.sights[way].is_ok());
-        fired.flat_map(of_way).collect()
-    }
-
-    /// Returns the figures of each room at a point.
+    /// The figures of each room at a point.
     pub fn sights(&self, Point { way, setting }: Point) -> &[Sight] {
         let index = Setting::ALL.iter().position(|&it| it == setting).unwrap_or(0);
         self.sights[way].as_ref().map_or(&[], |by_setting| &by_setting[index])
     }
 
-    fn t95_and_rate(&self, point: Point) -> (f64, f64) {
-        let sights = self.sights(point);
-        let latencies = Latencies::new(sights.iter().map(|sight| sight.latency_ms));
-        (latencies.t95_ms(&vec![1; sights.len()]), rate(sights, &vec![1; sights.len()]))
+    /// Returns true if the ring can be fired so. Only one by one has a median.
+    fn fires(&self, measured: &Measured, Point { way, setting }: Point) -> bool {
+        let fits = setting != Setting::Median || measured.ways[way].family == Family::OneByOne;
+        fits && self.sights[way].is_ok()
     }
 
-    /// Returns the point at which some ways are used with at most this many false stops a minute. A way's point is its
-    /// most eager setting if this has few enough, or else the setting of least t95 that does; the way with the least
-    /// t95 is chosen. `None` if none of the ways can fire the ring.
-    pub fn operating(&self, measured: &Measured, ways: impl Fn(usize) -> bool, most_per_min: f64) -> Option<Operating> {
-        let points = self.points(measured, ways);
-        let figures: Vec<_> = points.iter().map(|&point| (point, self.t95_and_rate(point))).collect();
+    fn mean_and_rate(&self, point: Point) -> (f64, f64) {
+        let sights = self.sights(point);
+        let latencies = Latencies::new(sights.iter().map(|sight| sight.latency_ms));
+        (latencies.mean_ms(&vec![1; sights.len()]), rate(sights, &vec![1; sights.len()]))
+    }
+
+    /// The point at which a group is used with at most this many false stops a minute. For each way it is the most
+    /// eager setting if that has few enough, else the quickest setting that has; among the ways it is the quickest, by
+    /// the mean time until a thing is seen. `None` if the ring cannot be fired by any of them.
+    pub fn operating(&self, measured: &Measured, group: &[Point], most_per_min: f64) -> Option<Operating> {
+        let points = group.iter().filter(|&&point| self.fires(measured, point));
+        let figures: Vec<_> = points.map(|&point| (point, self.mean_and_rate(point))).collect();
         let eager = |way: usize| {
             figures
                 .iter()
@@ -126,6 +124,7 @@ impl Under {
             things: latencies.len(),
             t50_t90_ms: [0.5, 0.9].map(|share| latencies.within_ms(share, &vec![1; sights.len()])),
             t95_ms: Estimate::of(&bootstrap.figures(|counts| latencies.t95_ms(counts))),
+            mean_ms: Estimate::of(&bootstrap.figures(|counts| latencies.mean_ms(counts))),
             never: latencies.never(),
             false_stops: sights.iter().map(|sight| sight.false_stops).sum(),
             minutes: sights.iter().map(|sight| sight.watched_s).sum::<f64>() / 60.0,
@@ -151,8 +150,8 @@ fn rate(sights: &[Sight], counts: &[u16]) -> f64 {
 pub struct Cost {
     /// Operating points under each condition; fewer if no way of the group can fire the ring.
     pub operating: Vec<Operating>,
-    /// The geometric mean over the conditions of the group's t95 relative to that of the first group, which may have
-    /// more false stops; `None` without an operating point under a condition.
+    /// The geometric mean over the conditions of its mean time until a thing is seen, at most a second each, relative to
+    /// the base's, which may have more false stops; `None` without an operating point under a condition.
     pub cost: Option<Estimate>,
 }
 
@@ -174,13 +173,14 @@ impl Measured {
         Bootstrap::new(rooms, u64::from(condition.others))
     }
 
-    /// Returns the geometric mean over the conditions of one way's t95 relative to another's, with its interval.
+    /// The geometric mean over the conditions of one way's mean time until a thing is seen relative to another's, with
+    /// its interval.
     fn ratio(&self, ones: &[Point], others: &[Point]) -> Estimate {
         let mut logs: Vec<f64> = vec![];
         for ((under, &one), &other) in self.under.iter().zip(ones).zip(others) {
             let of = |point| Latencies::new(under.sights(point).iter().map(|sight| sight.latency_ms));
             let (one, other) = (of(one), of(other));
-            let log = |counts: &[u16]| libm::log(capped_ms(one.t95_ms(counts)) / capped_ms(other.t95_ms(counts)));
+            let log = |counts: &[u16]| libm::log(one.mean_ms(counts) / other.mean_ms(counts));
             let of_condition = self.bootstrap(under.condition).figures(log);
             logs.resize(of_condition.len(), 0.0);
             logs.iter_mut().zip(of_condition).for_each(|(sum, log)| *sum += log);
@@ -189,23 +189,34 @@ impl Measured {
         Estimate::of(&logs.iter().map(|sum| libm::exp(sum / conditions)).collect::<Vec<_>>())
     }
 
-    /// Computes the costs of groups of ways with points chosen in other rooms of the same conditions, and recommends
-    /// the group of lowest cost, or a simpler one that does not differ significantly from it.
-    pub fn costs(&self, chosen: &Self, groups: &[Vec<usize>]) -> Costs {
-        let operating = |group: &Vec<usize>| -> Vec<Operating> {
-            let of = |under: &Under| under.operating(chosen, |way| group.contains(&way), ONE_A_MINUTE);
-            chosen.under.iter().filter_map(of).collect()
+    /// Returns true if there are surely more false stops than one a minute, whatever was chosen.
+    fn surely_stops(&self, under: &Under, point: Point) -> bool {
+        let sights = under.sights(point);
+        let rates = self.bootstrap(under.condition).figures(|counts| rate(sights, counts));
+        Estimate::of(&rates).interval_95[0] > ONE_A_MINUTE
+    }
+
+    /// The costs of groups of points, each chosen in other rooms of the same conditions, relative to one of them, and the
+    /// group to recommend: the one of the least cost, or a simpler one whose difference is not significant. A group that
+    /// surely has more than one false stop a minute here is left out.
+    pub fn costs(&self, chosen: &Self, base: &[Point], groups: &[Vec<Point>]) -> Costs {
+        let operating = |group: &[Point]| -> Vec<Operating> {
+            chosen.under.iter().filter_map(|under| under.operating(chosen, group, ONE_A_MINUTE)).collect()
         };
         let keeping = |operating: &Vec<Operating>| -> Option<Vec<Point>> {
-            let at = |operating: &Operating| if let Operating::At(point) = operating { Some(*point) } else { None };
-            operating.iter().map(at).collect::<Option<Vec<_>>>().filter(|points| points.len() == self.under.len())
+            let at = |(operating, under): (&Operating, &Under)| match operating {
+                Operating::At(point) if !self.surely_stops(under, *point) => Some(*point),
+                _ => None,
+            };
+            let points = operating.iter().zip(&self.under).map(at).collect::<Option<Vec<_>>>();
+            points.filter(|points| points.len() == self.under.len())
         };
-        let operating: Vec<_> = groups.iter().map(operating).collect();
+        // Others are measured by the base even where it has more false stops than one a minute.
+        let base: Vec<Point> = operating(base).iter().map(|it| it.point()).collect();
+        let operating: Vec<_> = groups.iter().map(|group| operating(group)).collect();
         let points: Vec<_> = operating.iter().map(keeping).collect();
-        // Other ways are compared with one by one even if it has more than one false stop a minute.
-        let base = operating.first().map(|of| of.iter().map(|it| it.point()).collect::<Vec<_>>());
-        let base = base.filter(|base| base.len() == self.under.len());
-        let against_base = |points: &Option<Vec<Point>>| Some(self.ratio(points.as_ref()?, base.as_ref()?));
+        let has_base = base.len() == self.under.len();
+        let against_base = |points: &Option<Vec<Point>>| Some(self.ratio(points.as_ref().filter(|_| has_base)?, &base));
         let costs = operating.into_iter().zip(&points);
         let costs = costs.map(|(operating, points)| Cost { operating, cost: against_base(points) }).collect();
         let usable: Vec<(usize, &Vec<Point>)> =

@@ -3,16 +3,17 @@
 use core::fmt::Write as _;
 use core::ops::Range;
 
+use super::cost::Point;
 use super::heard::{Control, Heard};
 use super::sight::Sight;
 use super::things::{Draws, ThingKind};
 use super::trial::{Condition, Moving, Speeds, Trial};
 use super::votes::Setting;
-use super::ways::{Family, MeasuredWay};
+use super::ways::{Family, RoomWay};
 use crate::{
     experiments::error::ExperimentError,
     experiments::progress::Progress,
-    experiments::rooms::{RoomKind, RoomWay},
+    experiments::rooms::{RoomGroup, RoomPlan},
     methods::Method,
     simulation::Options,
     threads::sweep,
@@ -24,7 +25,9 @@ use crate::{
 pub struct MeasureAsked {
     /// The conditions.
     pub conditions: Vec<Condition>,
-    /// The number of the first room of each kind. Settings are chosen in rooms below 2,000; figures are reported from
+    /// Rooms of the caller's own; none for those of the set.
+    pub own: Vec<RoomGroup>,
+    /// The number of the first room of each kind. Settings are chosen on numbers below 2,000, and reported from
     /// [`FIRST`](crate::experiments::FIRST) on.
     pub first: u64,
     /// Number of rooms of each of the seven kinds without another robot; seven times as many have one.
@@ -36,9 +39,9 @@ pub struct MeasureAsked {
 /// A trial's room, and the thing that appeared.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Place {
-    /// The room's kind and number.
-    pub room: (RoomKind, u64),
-    /// The thing's kind, its sensor and its distance in metres; `None` if no thing fitted that its sensor reads.
+    /// The room's kind, or the name of its group, and its number.
+    pub room: (String, u64),
+    /// The thing's kind, its sensor and distance in metres; none where none had room that its sensor reads.
     pub thing: Option<(ThingKind, usize, f64)>,
     /// Counts of the things drawn.
     pub draws: Draws,
@@ -64,13 +67,43 @@ pub struct Under {
 #[derive(Clone, Debug)]
 pub struct Measured {
     /// The ways.
-    pub ways: Vec<MeasuredWay>,
-    /// The results under each condition.
+    pub ways: Vec<RoomWay>,
+    /// The conditions.
     pub under: Vec<Under>,
 }
 
+impl MeasureAsked {
+    /// The rooms under a condition for a robot of this radius, each with its group's name and what it is random by.
+    fn rooms(&self, condition: Condition, radius_m: f64) -> Vec<(String, u64, RoomPlan)> {
+        /// The key of the caller's rooms, beside those of the kinds.
+        const OWN: u64 = 20;
+        if self.own.is_empty() {
+            let of_set = condition.rooms(self.first, self.places).into_iter();
+            let plan = |(kind, number)| RoomPlan::random(kind, number, radius_m);
+            return of_set.map(|room| (room.0.to_string(), room.0 as u64, plan(room))).collect();
+        }
+        let of_group = |group: &RoomGroup| {
+            group.rooms.iter().map(|plan| (group.name.clone(), OWN, plan.clone())).collect::<Vec<_>>()
+        };
+        self.own.iter().flat_map(of_group).collect()
+    }
+}
+
 impl Under {
-    /// Returns the share of fitting things that their own sensor does not read: the module's blindness.
+    /// The mean share of time with an echo in which the belief is right, by the groups of rooms; none without an echo.
+    pub fn right_by_room(&self, sights: &[Sight]) -> Vec<(String, Option<f64>)> {
+        let mut names: Vec<&String> = self.places.iter().map(|place| &place.room.0).collect();
+        names.dedup();
+        let mean = |name: &String| {
+            let of = self.places.iter().zip(sights).filter(|(place, _)| place.room.0 == *name);
+            let shares: Vec<f64> = of.map(|(_, sight)| sight.right).filter(|right| !right.is_nan()).collect();
+            let mean = shares.iter().sum::<f64>() / shares.len() as f64;
+            (name.clone(), (!shares.is_empty()).then_some(mean))
+        };
+        names.into_iter().map(mean).collect()
+    }
+
+    /// The share of things that had room but are not read by the sensor before which they are: the module's blindness.
     pub fn unread(&self) -> f64 {
         let sum = |of: fn(&Draws) -> u32| self.places.iter().map(|place| f64::from(of(&place.draws))).sum::<f64>();
         sum(|draws| draws.unread) / sum(|draws| draws.fitted).max(1.0)
@@ -83,28 +116,28 @@ impl Under {
 /// # Errors
 /// [`ExperimentError`] for no ways, rooms or conditions, for a room too small for the robot, and if it was stopped.
 pub fn measure(
-    ways: &[(MeasuredWay, Option<Control>)],
+    ways: &[(RoomWay, Option<Control>)],
     asked: &MeasureAsked,
     keep_going: &(dyn Fn(f64) -> bool + Sync),
 ) -> Result<Measured, ExperimentError> {
     let Some((first, _)) = ways.first() else { return Err(ExperimentError::NoMethods) };
+    let robot = &first.robot;
     let rooms = |&condition: &Condition| {
-        condition.rooms(asked.first, asked.places).into_iter().map(move |room| (condition, room))
+        asked.rooms(condition, robot.radius_m()).into_iter().map(move |room| (condition, room))
     };
     let jobs: Vec<_> = asked.conditions.iter().flat_map(rooms).collect();
     if jobs.is_empty() {
         return Err(ExperimentError::NoSeeds);
     }
     let progress = Progress::new(jobs.len() as u64, keep_going);
-    let robot = &first.way.robot;
-    // A control may need readings from after the thing is seen.
+    // A control may need what comes after the thing is seen.
     let until_seen = ways.iter().all(|(_, control)| control.is_none());
-    let runs = sweep(&jobs, |&(condition, room)| {
-        let trial = Trial::new(room, robot, condition, asked.speeds)?;
+    let runs = sweep(&jobs, |(condition, (name, key, plan))| {
+        let trial = Trial::new((*key, plan.clone()), robot, *condition, asked.speeds)?;
         // Controls of one way share its readings.
         let mut last: Option<(&RoomWay, Vec<Heard>)> = None;
         let mut sights = Vec::with_capacity(ways.len());
-        for (MeasuredWay { way, .. }, control) in ways {
+        for (way, control) in ways {
             let mut heard = match last.take().filter(|(before, _)| *before == way) {
                 Some((_, heard)) => heard,
                 None => match trial.heard(way, until_seen, &|| progress.go_on()) {
@@ -117,21 +150,21 @@ pub fn measure(
             };
             last = Some((way, heard.clone()));
             if let Some(control) = control {
-                control.apply(&mut heard, room.1, trial.c);
+                control.apply(&mut heard, plan.number, trial.c);
             }
             sights.push(Ok(Setting::ALL.map(|setting| trial.sight(&way.robot, &heard, setting, *control))));
         }
         progress.one_done();
-        Ok((trial.place(room), sights))
+        Ok((*condition, (trial.place(name.clone()), sights)))
     });
     let runs = runs.into_iter().collect::<Result<Vec<_>, ExperimentError>>()?;
     if progress.stopped() {
         return Err(ExperimentError::Stopped);
     }
-    let mut runs = runs.into_iter();
+    let mut runs = runs.into_iter().peekable();
     let under = asked.conditions.iter().map(|&condition| {
-        let rooms = condition.rooms(asked.first, asked.places).len();
-        let (places, by_room): (Vec<_>, Vec<_>) = runs.by_ref().take(rooms).unzip();
+        let of_condition = core::iter::from_fn(|| runs.next_if(|(of, _)| *of == condition));
+        let (places, by_room): (Vec<_>, Vec<_>) = of_condition.map(|(_, run)| run).unzip();
         Under { condition, places, sights: by_setting(by_room, ways.len()) }
     });
     let under = under.collect();
@@ -150,8 +183,9 @@ fn by_setting(mut by_room: Vec<Vec<Result<[Sight; Setting::ALL.len()], String>>>
 }
 
 impl Trial {
-    fn place(&self, room: (RoomKind, u64)) -> Place {
+    fn place(&self, name: String) -> Place {
         let thing = self.thing.as_ref().map(|thing| (thing.kind, thing.sensor, thing.distance_m));
+        let room = (name, self.plan.number);
         Place { room, thing, draws: self.draws, speed_m_s: self.speeds.speed_m_s }
     }
 }
@@ -170,7 +204,7 @@ pub fn measure_in_scene(
     let robot = world.robots().first().ok_or(ExperimentError::NoSeeds)?;
     let way = |&(family, method): &(Family, Method)| {
         let name = method.as_str();
-        MeasuredWay { family, way: RoomWay { name, method, robot: robot.clone(), options: Options::default() } }
+        RoomWay { family, name, method, robot: robot.clone(), options: Options::default() }
     };
     let progress = Progress::new(trials.end.saturating_sub(trials.start), keep_going);
     let runs = sweep(&trials.collect::<Vec<_>>(), |&number| {
@@ -182,7 +216,7 @@ pub fn measure_in_scene(
             });
         let sights = sights.collect::<Result<Vec<_>, _>>()?;
         progress.one_done();
-        Ok((trial.place((RoomKind::Alcove, number)), sights))
+        Ok((trial.place(String::new()), sights))
     });
     if progress.stopped() {
         return Err(ExperimentError::Stopped);
@@ -194,10 +228,40 @@ pub fn measure_in_scene(
 }
 
 impl Measured {
-    /// Returns the ways of each family, for [`costs`](Self::costs).
-    pub fn families(&self) -> Vec<Vec<usize>> {
-        let of = |family| (0..self.ways.len()).filter(|&way| self.ways[way].family == family).collect();
-        Family::ALL.into_iter().map(of).collect()
+    /// The points of some of the ways.
+    pub fn points(&self, ways: impl Fn(usize) -> bool) -> Vec<Point> {
+        let of_way = |way| Setting::ALL.map(|setting| Point { way, setting });
+        (0..self.ways.len()).filter(|&way| ways(way)).flat_map(of_way).collect()
+    }
+
+    /// The points of each family, for [`costs`](Self::costs).
+    pub fn families(&self) -> Vec<Vec<Point>> {
+        Family::ALL.into_iter().map(|family| self.points(|way| self.ways[way].family == family)).collect()
+    }
+
+    /// Adds rooms in which the ways were measured under the same conditions.
+    pub fn add(&mut self, more: Self) {
+        for (under, more) in self.under.iter_mut().zip(more.under) {
+            under.places.extend(more.places);
+            for (sights, more) in under.sights.iter_mut().zip(more.sights) {
+                match (&mut *sights, more) {
+                    (Ok(sights), Ok(more)) => sights.iter_mut().zip(more).for_each(|(all, more)| all.extend(more)),
+                    (Ok(_), Err(why)) => *sights = Err(why),
+                    (Err(_), _) => {}
+                }
+            }
+        }
+    }
+
+    /// The measurement under some of the conditions, of some of the ways.
+    pub fn only(&self, conditions: impl Fn(Condition) -> bool, ways: impl Fn(usize) -> bool) -> Self {
+        let kept: Vec<usize> = (0..self.ways.len()).filter(|&way| ways(way)).collect();
+        let under = self.under.iter().filter(|under| conditions(under.condition)).map(|under| Under {
+            condition: under.condition,
+            places: under.places.clone(),
+            sights: kept.iter().map(|&way| under.sights[way].clone()).collect(),
+        });
+        Self { ways: kept.iter().map(|&way| self.ways[way].clone()).collect(), under: under.collect() }
     }
 
     /// The head of [`csv`](Self::csv).
@@ -222,7 +286,7 @@ impl Measured {
                             "{},{kind},{number},{},{setting},{thing},{fitted},{unread},{speed_m_s:.3},{},{false_stops},\
                              {watched_s:.3},{foreign:.5},{},{blind}",
                             under.condition.as_str(),
-                            way.way.name,
+                            way.name,
                             known(latency_ms),
                             known(right),
                         );

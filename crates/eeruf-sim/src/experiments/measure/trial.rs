@@ -6,10 +6,11 @@ use serde::Serialize;
 
 use super::heard::Heard;
 use super::things::{Draws, Thing};
+use super::ways::RoomWay;
 use crate::{
     acoustics::Physics,
     experiments::error::ExperimentError,
-    experiments::rooms::{RoomKind, RoomPlan, RoomWay},
+    experiments::rooms::{RoomKind, RoomPlan},
     geometry::Pose,
     methods::Method,
     results::Readings,
@@ -120,14 +121,13 @@ pub(super) struct Trial {
 }
 
 impl Trial {
-    /// Makes the trial of a room for a robot under a condition.
+    /// The trial of a room for a robot under a condition; the key is its kind's.
     pub(super) fn new(
-        (kind, number): (RoomKind, u64),
+        (key, plan): (u64, RoomPlan),
         robot: &Robot,
         condition: Condition,
         asked: Speeds,
     ) -> Result<Self, ExperimentError> {
-        let plan = RoomPlan::random(kind, number, robot.radius_m());
         let speeds = match condition.moving {
             Moving::Standing => Speeds { speed_m_s: 0.0, turn_rad_s: 0.0 },
             // Each leg of its way lasts at least a second.
@@ -136,7 +136,7 @@ impl Trial {
             Moving::Driving => Speeds { speed_m_s: asked.speed_m_s.min(plan.way_m() / LONGEST_S), turn_rad_s: 0.0 },
             Moving::Turning => Speeds { speed_m_s: 0.0, ..asked },
         };
-        let mut random = Random::new(number).of(THING + kind as u64).of(condition.moving as u64);
+        let mut random = Random::new(plan.number).of(THING + key).of(condition.moving as u64);
         let appears_s = random.between(APPEARS_S[0], APPEARS_S[1]);
         let world = plan.moving(robot, speeds.speed_m_s, speeds.turn_rad_s)?;
         Ok(Self::drawn(plan, &world, speeds, appears_s, random))

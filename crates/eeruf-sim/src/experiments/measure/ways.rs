@@ -3,10 +3,13 @@
 use core::fmt;
 
 use eeruf_core::Micros;
+use eeruf_modules::Gain;
 
+use super::votes::Setting;
 use crate::{
-    experiments::rooms::RoomWay,
+    acoustics::GainProfile,
     methods::Method,
+    simulation::Options,
     world::{AnySchedule, FiringTable, Robot},
 };
 
@@ -17,7 +20,7 @@ pub enum Family {
     OneByOne,
     /// Groups of sensors that are far apart.
     Groups,
-    /// Two phases, at the shortest period and at longer ones.
+    /// Two phases, at the shortest period.
     TwoPhases,
     /// Flow.
     Flow,
@@ -26,17 +29,6 @@ pub enum Family {
 impl Family {
     /// All families, the simplest first.
     pub const ALL: [Self; 4] = [Self::OneByOne, Self::Groups, Self::TwoPhases, Self::Flow];
-
-    /// Returns the family of a way, by its name; `None` for a way that is not measured.
-    fn of(name: &str) -> Option<Self> {
-        match name {
-            "sequential" => Some(Self::OneByOne),
-            "far_groups" => Some(Self::Groups),
-            "eeruf" | "eeruf_x1.5" | "eeruf_x2" => Some(Self::TwoPhases),
-            "flow" => Some(Self::Flow),
-            _ => None,
-        }
-    }
 }
 
 impl fmt::Display for Family {
@@ -50,38 +42,96 @@ impl fmt::Display for Family {
     }
 }
 
-/// A way of firing with its family.
-#[derive(Clone, Debug)]
-pub struct MeasuredWay {
+/// A way of firing a ring.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RoomWay {
     /// The family.
     pub family: Family,
-    /// The way; every way knows the robot's motion.
-    pub way: RoomWay,
+    /// The name in tables and in JSON.
+    pub name: &'static str,
+    /// The method.
+    pub method: Method,
+    /// The robot as it fires that way; all know the robot's motion.
+    pub robot: Robot,
+    /// Settings of the method.
+    pub options: Options,
 }
 
-/// Returns the measured ways for a ring, one by one first; `schedule` is as in [`RoomWay::all`].
-pub fn measured_ways(robot: &Robot, schedule: Option<&AnySchedule>) -> Vec<MeasuredWay> {
-    let usual = RoomWay::all(robot, schedule).into_iter().filter_map(|way| {
-        let family = Family::of(way.name)?;
-        Some(MeasuredWay { family, way: RoomWay { robot: Robot { odometry: true, ..way.robot }, ..way } })
-    });
-    let mut ways: Vec<_> = usual.collect();
-    let Some(quiet) = ways.iter().find(|way| way.family == Family::OneByOne).map(|way| way.way.clone()) else {
-        return ways;
-    };
-    let more = [("one_by_one_10ms", 10), ("one_by_one_20ms", 20), ("one_by_one_33ms", 33)].map(|(name, gap_ms)| {
-        let mut robot = quiet.robot.clone();
+impl RoomWay {
+    /// The ways for a ring, one by one first. All listen for the robot's window, flow for no longer than it
+    /// [reaches](Robot::reach).
+    ///
+    /// `schedule` is a schedule of two phases for it, the shortest; where there is none, there is no way of two phases.
+    /// `robot.period` is used by none of them.
+    pub fn all(robot: &Robot, schedule: Option<&AnySchedule>) -> Vec<Self> {
+        let way = |family, name, method, period: Micros| Self {
+            family,
+            name,
+            method,
+            robot: Robot { period, odometry: true, ..robot.clone() },
+            options: Options::default(),
+        };
+        // What a module is not triggered before, and what it may still hear of its own sound.
+        let rest = robot.module_rest().max(robot.audible).max(robot.window).saturating_add(Micros::new(1));
+        let mut ways = vec![way(Family::OneByOne, "sequential", Method::Sequential, rest)];
         let sensors = robot.sensors.len() as u32;
-        // No module is triggered before its rest is over, or while it listens.
-        let needs = robot.module_rest().max(robot.window.saturating_add(Micros::new(1)));
-        let period = Micros::from_millis(gap_ms * sensors).max(needs).as_micros();
-        let row =
-            (0..sensors).map(|sensor| Micros::new((u64::from(period) * u64::from(sensor) / u64::from(sensors)) as u32));
-        robot.firing.table = Some(FiringTable { period: Micros::new(period), rows: vec![row.collect()] });
-        RoomWay { name, method: Method::Table, robot, options: quiet.options }
-    });
-    let blocking = RoomWay { name: "blocking", method: Method::Blocking, ..quiet };
-    ways.extend(more.into_iter().chain([blocking]).map(|way| MeasuredWay { family: Family::OneByOne, way }));
-    ways.sort_by_key(|way| way.family);
-    ways
+        for (name, gap_ms) in [("one_by_one_10ms", 10), ("one_by_one_20ms", 20), ("one_by_one_33ms", 33)] {
+            let mut apart = way(Family::OneByOne, name, Method::Table, rest);
+            // No module before its rest, and none while it listens.
+            let needs = robot.module_rest().max(robot.window.saturating_add(Micros::new(1)));
+            let period = Micros::from_millis(gap_ms * sensors).max(needs).as_micros();
+            let at = |sensor| Micros::new((u64::from(period) * u64::from(sensor) / u64::from(sensors)) as u32);
+            let rows = vec![(0..sensors).map(at).collect()];
+            apart.robot.firing.table = Some(FiringTable { period: Micros::new(period), rows });
+            // Few sensors have one period for several gaps.
+            if ways.iter().all(|way| way.robot.firing.table != apart.robot.firing.table) {
+                ways.push(apart);
+            }
+        }
+        ways.push(way(Family::OneByOne, "blocking", Method::Blocking, rest));
+        ways.push(way(Family::Groups, "far_groups", Method::FarGroups, rest));
+        ways.extend(schedule.map(|schedule| {
+            let mut eeruf = way(Family::TwoPhases, "eeruf", Method::Eeruf, schedule.period());
+            eeruf.robot.schedule = Some(*schedule);
+            eeruf
+        }));
+        let flow = way(Family::Flow, "flow", Method::Flow, rest);
+        ways.push(Self { robot: flow.robot.by_flow(), ..flow });
+        ways
+    }
+
+    /// The way and its votes in words.
+    pub fn in_words(&self, setting: Setting) -> String {
+        let way = match self.name {
+            "blocking" if setting == Setting::ALL[0] => "blocking, as sketches fire".to_owned(),
+            "blocking" => "one by one, in a loop".to_owned(),
+            "in_turn" => "one by one, after an echo".to_owned(),
+            "sequential" => "one by one, after the sound".to_owned(),
+            "far_groups" => "groups, far apart".to_owned(),
+            "eeruf" => "two phases (EERUF)".to_owned(),
+            name => match &self.robot.firing.table {
+                // With few sensors their rest counts, not the gap that was asked for.
+                Some(table) => {
+                    let gap_us = table.period.as_micros() / self.robot.sensors.len().max(1) as u32;
+                    format!("one by one, {:.0} ms apart", f64::from(gap_us) / 1e3)
+                }
+                None => name.to_owned(),
+            },
+        };
+        match setting {
+            Setting::Votes { m: 1, .. } => way,
+            Setting::Votes { m, n } => format!("{way}, {m} of {n}"),
+            Setting::Median => format!("{way}, median"),
+        }
+    }
+}
+
+/// Returns the robot with the other gain: the steps of the chip where it is constant, constant where it grows.
+pub fn with_other_gain(robot: &Robot) -> Robot {
+    let other = match robot.module_of(0).gain {
+        Gain::Constant if robot.module_of(0).frequency_hz > 45_000 => GainProfile::Polaroid6500,
+        Gain::Constant => GainProfile::Stepped,
+        _ => GainProfile::Constant,
+    };
+    robot.clone().with_pattern(Some(other), None)
 }

@@ -1,13 +1,11 @@
-//! Rooms in which ways of firing a ring are judged, to recommend the one that is right most of the time.
+//! Rooms in which rings are judged.
 //!
-//! The paper's sets test a method before three walls and among poles; users want its results in their own rooms.
-//! [`RoomPlan`] is a versioned set of rooms of eight [kinds](RoomKind). [`RoomWay`] is a way of firing one ring,
-//! baselines first. [`judge`] runs each way in each room and recommends one.
+//! The paper's sets ask how a method does before three walls and among poles; whoever mounts a ring asks how it does in
+//! rooms like theirs. [`RoomPlan`] is a versioned set of rooms of eight [kinds](RoomKind), or a room of the caller's own;
+//! [`measure`](super::measure) runs each way of firing a ring in each.
 
-mod judge;
+mod group;
 mod plan;
-mod way;
 
-pub use judge::{JudgedWay, Judgement, RoomFigures, RoomGroup, RoomsOptions, judge, with_other_gain};
+pub use group::RoomGroup;
 pub use plan::{DRIVING_S, RoomKind, RoomPlan, UnknownRoom, VERSION};
-pub use way::{Condition, RoomWay};

@@ -137,7 +137,7 @@ static bool are_neighbours(const EerufSchedule *schedule, uint8_t x, uint8_t y) 
     }
 }
 
-/* How much earlier a sensor fires in phase b than in phase a, each relative to the start of its period. */
+/* The time by which a sensor fires earlier in phase b than in phase a, each relative to the start of its period. */
 static int32_t shift_of(const EerufSchedule *schedule, uint8_t sensor) {
     return (int32_t)fires_at(schedule, 0, sensor) - (int32_t)fires_at(schedule, 1, sensor);
 }

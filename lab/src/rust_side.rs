@@ -53,7 +53,7 @@ fn paths() -> Value {
     Value::Object(answer)
 }
 
-/// Returns the times; the cases equal those of `overhead.py`.
+/// Returns the time of each call that `overhead.py` measures too, in seconds.
 fn times() -> Value {
     let wall = Scene::new(vec![Wall::new(5.0, 2.0, -5.0, 2.0)], vec![], Air::default()).expect("a wall");
     let alcove = [[0.85, 0.0], [0.85, 1.39], [-0.85, 1.39], [-0.85, 0.0]];

@@ -31,8 +31,10 @@ pub(crate) struct RoomArgs {
     #[arg(long, hide_short_help = true, value_name = "N")]
     #[arg(value_parser = clap::value_parser!(u64).range(..=1_000_000_000))]
     first: Option<u64>,
+    /// Without effect; none by default
     #[arg(long, hide = true, value_name = "PERCENT")]
     wrong: Option<String>,
+    /// Without effect
     #[arg(long, hide = true)]
     driving: bool,
 }

@@ -119,10 +119,11 @@ fn every_way(answer: &RoomsAnswer) -> String {
     };
     _ = writeln!(text, "\n{}", markdown(&header, answer.ways.iter().map(row)));
     text.push_str(
-        "mean: time until a thing is seen, a second at most. t95: by then 95 of 100 are seen; never: not within 5 s. stops/min: false stops, ! for more than one where \
-         votes were chosen. foreign: share of time in which foreign sound is believed and wrong. right: share of time \
-         with an echo in which the belief is right. right/s: right echoes a second. blind: sensors that are right in \
-         under 5 % of firings. In brackets 95 % intervals over rooms.\n",
+        "mean: time until a thing is seen, a second at most. t95: by then 95 of 100 are seen; never: not within 5 s. \
+         stops/min: false stops, ! for more than one where votes were chosen. foreign: share of time in which foreign \
+         sound is believed and wrong. right: share of time with an echo in which the belief is right. right/s: right \
+         echoes a second. blind: sensors that are right in under 5 % of firings. In brackets 95 % intervals over \
+         rooms.\n",
     );
     let mut header = vec!["right %", "way"];
     header.extend(answer.ways.first().iter().flat_map(|way| &way.rooms).map(|(name, _)| name.as_str()));

@@ -1,4 +1,5 @@
-//! The answer of `study` for a scene: firing as sketches do, the best one by one and flow, a row each, and what to do.
+//! The answer of `study` for a scene: a row each for firing as sketches do, for the best way of firing one by one, and
+//! for flow; then a recommendation.
 
 use std::fmt::Write as _;
 

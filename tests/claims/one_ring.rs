@@ -450,8 +450,8 @@ fn ring_of_a_module_alone_is_that_of_its_file() {
     let equal = ["window_us", "blanking_us", "least_us", "most_us", "rest_us", "dice_us", "t_delta_us", "near_us"]
         .map(|number| format!("mine.{number} == eeruf_flow_config.{number}"));
     let text = format!(
-        "#include \"eeruf.h\"\n#include \"ring.h\"\nint main(void) {{\n    const EerufFlowConfig mine = EERUF_FLOW_HC_SR04(8);\n    return \
-         !({});\n}}\n",
+        "#include \"eeruf.h\"\n#include \"ring.h\"\nint main(void) {{\n    \
+         const EerufFlowConfig mine = EERUF_FLOW_HC_SR04(8);\n    return !({});\n}}\n",
         equal.join(" && ")
     );
     compile_and_run(&folder, &text, C);

@@ -1,4 +1,4 @@
-//! Six boards with one program of `eeruf design --program`: each draws a seed of its own, by its chip's number or noise.
+//! Six boards with one program of `eeruf design --program`: each draws its own seed, by its chip's number or noise.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -13,7 +13,9 @@ const RING: &str = r"
 #include <eeruf.h>
 template <int N> struct EerufFlow {
     EerufFlow(const uint8_t (&)[N], const uint8_t (&)[N]) {}
-    bool begin(const EerufFlowConfig &ring, const EerufHcSr04Settings &) { return printf(`%lu `, (unsigned long)ring.seed); }
+    bool begin(const EerufFlowConfig &ring, const EerufHcSr04Settings &) {
+        return printf(`%lu `, (unsigned long)ring.seed);
+    }
     bool read() { return false; }
     bool accepted() { return false; }
     bool clear() { return false; }

@@ -25,7 +25,7 @@ def test_recommendation_is_the_programs() -> None:
 
 
 def test_own_rooms_are_scenes_by_name() -> None:
-    """They give the program's answer for the same rooms from files."""
+    """Own rooms give the program's answer for the same rooms from files."""
     alcove = RING.parents[1] / "scenes" / "alcove-hc-sr04.toml"
     answer = experiments.recommend(RING, rooms={alcove.stem: sim.Scene.read_toml(alcove)}, places=1, all_ways=True)
     words = ["study", str(RING), "--rooms", str(alcove), "--places", "1", "--json"]

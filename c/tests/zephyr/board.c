@@ -176,7 +176,7 @@ static void end(void) {
             expect(strcmp(module->said, "unanswered") == 0, "unanswered", i);
             continue;
         }
-        /* Its line sticks 20 times for two seconds: it must report that, and never free space. */
+        /* A line that sticks 20 times for two seconds: the ring must report that, and never free space. */
         const unsigned lost_s = i == STICKS ? 40 : 0;
         expect(100 * module->firings >= (RUN_S - lost_s) * FIRINGS, "11.6 firings a second", i);
         expect(module->unanswered >= lost_s / 2, "that it does not answer while its line sticks", i);

@@ -74,7 +74,7 @@ pub enum SensorState {
     },
     /// Nothing is known.
     Unknown {
-        /// How long nothing has been known.
+        /// The time for which nothing has been known.
         since: Micros,
         /// The latest reason.
         why: Doubt,

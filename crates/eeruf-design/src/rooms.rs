@@ -68,7 +68,7 @@ const USUAL_SPEED_M_S: f64 = 0.3;
 /// The rate of turn of a robot whose file has none, in degrees a second: a choice.
 const USUAL_TURN_DEG_S: f64 = 45.0;
 
-/// Budget of nodes for the schedule of two phases in the judgement.
+/// Node budget of the search for a schedule of two phases, when ways of firing are compared in rooms.
 const STUDY_BUDGET: u64 = 200_000;
 
 impl RingSpec {

@@ -66,7 +66,7 @@ impl Line {
         health: Health::Well,
     };
 
-    /// Returns the meaning of an edge for the firing at `fired`; the edge was seen at most `before` after it came.
+    /// Returns the meaning of an edge for the firing at `fired`; it occurred up to `before` before it was detected.
     pub(crate) fn edge(&mut self, edge: Edge, before: Micros, fired: Instant, settings: &Settings) -> Shown {
         // Without a trigger there is no crosstalk in the cable.
         let deaf = if self.is_held { Micros::ZERO } else { settings.deaf };

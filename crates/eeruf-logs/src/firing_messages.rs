@@ -32,7 +32,7 @@ string reading
 float32 g
 ";
 
-/// A message of ROS 2, and the name of its clock.
+/// Decodes a ROS 2 message into a firing and the name of its clock.
 fn of_cdr(data: &[u8]) -> Option<(Firing, String)> {
     let (mut rest, most) = cdr_bytes(data)?;
     rest.take(8)?;

@@ -23,7 +23,7 @@ pub(crate) enum Encoding {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum Kind {
     Range {
-        /// True if the schema has a variance, if there is a schema.
+        /// True if the schema has a variance; `None` without a schema.
         variance: Option<bool>,
     },
     /// `LaserScan` with at most this many beams.

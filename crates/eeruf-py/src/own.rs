@@ -128,7 +128,7 @@ type Raised = Arc<Mutex<Option<PyErr>>>;
 #[derive(Default)]
 pub(crate) struct Calls {
     callables: Vec<Mutex<Option<Py<PyAny>>>>,
-    /// Callables that were arguments of the simulation: true for a firing, the robot, and the callable's index.
+    /// Callables passed to the simulation: each is a firing (true) or a filter, with its robot and its index.
     given: Vec<(bool, usize, usize)>,
     raised: Raised,
 }

@@ -84,7 +84,7 @@ type TableRing<const E: usize> = eeruf_core::Ring<
     E,
 >;
 
-/// The kinds of rings: with a table or flow, each with one echo of a firing, which is smaller and faster, or several.
+/// The kinds of rings: by table or by flow, each with one echo per firing (smaller and faster) or several.
 #[derive(Clone)]
 pub(crate) enum Fires {
     Table(Box<TableRing<1>>),

@@ -91,7 +91,7 @@ pub(super) fn up_to(state: &mut u64, most: u32) -> u32 {
     ((*state >> 33) % u64::from(most)) as u32
 }
 
-/// The sketch's lines for other work, for use elsewhere: its variables and its function.
+/// Returns the sketch's simulated workload, its variables and its function, for use in other sketches.
 pub(super) fn work() -> Option<(&'static str, &'static str)> {
     let (variables, rest) = SKETCH.split_once("struct {")?.1.split_once("void setup")?;
     Some((variables, rest.split_once("void doWork")?.1.split_once("void loop")?.0))

@@ -16,7 +16,7 @@ fn ring_is_judged_as_its_file_says_that_it_is_used() {
     let under = |answer: &RoomsAnswer| answer.kinds[0].best.iter().map(|best| best.condition).collect::<Vec<_>>();
     assert_eq!(under(&alone), ["standing", "driving", "turning"]);
     assert_eq!((alone.speed_m_s, alone.turn_deg_s), (0.5, 45.0));
-    // The best one by one, with any votes, is the baseline; a program's has at least its cost, within the noise of a room.
+    // The best one by one, with any votes, is the baseline; a program's costs as much or more, within a room's noise.
     let kinds: Vec<_> = alone.kinds.iter().map(|kind| &*kind.kind).collect();
     assert_eq!(kinds, ["one by one", "groups", "two phases", "flow"]);
     assert_eq!(alone.baseline.iter().map(|of| of.condition).collect::<Vec<_>>(), under(&alone));

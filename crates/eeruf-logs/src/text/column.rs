@@ -169,7 +169,7 @@ impl Column {
         falls * 2 >= self.numbers.len() && falls > 0
     }
 
-    /// Returns true for a column whose first value equals its usual step: times from 0 on.
+    /// Returns true for a rising column whose first step is at most three times its median step.
     pub(super) fn begins_evenly(&self) -> bool {
         let steps = self.steps();
         let (Some(median), [first, second, ..]) = (steps.get(steps.len() / 2), &self.numbers[..]) else { return false };

@@ -82,7 +82,7 @@ fn ran(seed: u64, belief: BeliefSettings, late: u32, silence: Silence, speed_mm_
     Ran { log: FiringLog::new("test", firings), settings, believed }
 }
 
-/// Number of readings whose kind and belief are judged as by the ring, and number of all.
+/// Returns how many readings the replay judges as the ring did, in kind and belief, and how many there are.
 fn equal(log: &FiringLog, ran: &Ran) -> (usize, usize) {
     let again = replay_flow(log, &ran.settings).unwrap();
     let rows = log.firings.iter().zip(&again).zip(&ran.believed);

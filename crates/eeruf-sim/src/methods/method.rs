@@ -97,7 +97,7 @@ impl Method {
         shown.replace("[`", "").replace('`', "").trim_end_matches('.').to_owned()
     }
 
-    /// Returns true for the paper's method and its extensions: alternating waits, and comparison of readings.
+    /// Returns true for EERUF's own methods, by table or by flow: they reject readings that another firing explains.
     pub const fn is_eeruf(self) -> bool {
         self.row().judge.asks()
     }

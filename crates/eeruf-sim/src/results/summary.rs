@@ -7,8 +7,8 @@ use super::belief::BeliefShares;
 use super::readings::{Cause, Readings};
 use crate::methods::Method;
 
-/// Default tolerance of a reading against the reference, in us: 0.5 ms, which is 8.6 cm. It is Set I's limit of an
-/// error, and equals its `T_delta`.
+/// Default tolerance of a reading against the reference, in us: 0.5 ms, which is 8.6 cm. This is Set I's error limit,
+/// and equals its `T_delta`.
 pub const DEFAULT_TOLERANCE_US: f64 = 500.0;
 
 /// A method's figures over one simulation, all robots together. Shares are fractions of 1.

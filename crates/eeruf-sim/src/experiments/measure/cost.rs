@@ -150,8 +150,8 @@ fn rate(sights: &[Sight], counts: &[u16]) -> f64 {
 pub struct Cost {
     /// Operating points under each condition; fewer if no way of the group can fire the ring.
     pub operating: Vec<Operating>,
-    /// The geometric mean over the conditions of its mean time until a thing is seen, at most a second each, relative to
-    /// the base's, which may have more false stops; `None` without an operating point under a condition.
+    /// The geometric mean over the conditions of its mean time until a thing is seen, at most a second each, relative
+    /// to the base's, which may have more false stops; `None` without an operating point under a condition.
     pub cost: Option<Estimate>,
 }
 
@@ -196,9 +196,9 @@ impl Measured {
         Estimate::of(&rates).interval_95[0] > ONE_A_MINUTE
     }
 
-    /// The costs of groups of points, each chosen in other rooms of the same conditions, relative to one of them, and the
-    /// group to recommend: the one of the least cost, or a simpler one whose difference is not significant. A group that
-    /// surely has more than one false stop a minute here is left out.
+    /// The costs of groups of points, each chosen in other rooms of the same conditions, relative to a base, and the
+    /// group to recommend: the one of the least cost, or a simpler one if the difference is not significant. A group
+    /// that significantly exceeds one false stop a minute here is left out.
     pub fn costs(&self, chosen: &Self, base: &[Point], groups: &[Vec<Point>]) -> Costs {
         let operating = |group: &[Point]| -> Vec<Operating> {
             chosen.under.iter().filter_map(|under| under.operating(chosen, group, ONE_A_MINUTE)).collect()

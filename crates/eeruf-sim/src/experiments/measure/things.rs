@@ -20,7 +20,7 @@ const ASIDE_DEG: f64 = 7.5;
 /// Number of firings of the sensor alone in quiet air, one a second, and the number that must read the thing first.
 const FIRINGS: u32 = 10;
 const MUST_READ: usize = 9;
-/// Number of draws after which a trial has no thing.
+/// Number of unsuccessful draws after which a trial goes without a thing.
 const MOST_DRAWN: u32 = 400;
 
 /// A kind of thing. All dimensions are choices.
@@ -175,7 +175,7 @@ impl Thing {
         2e6 * (self.nearest_point(from) - from).norm() / c
     }
 
-    /// Returns true if the sensor's reading alone is different without the thing.
+    /// Returns true if the sensor, firing alone, would read something else without the thing.
     pub(super) fn changes(&self, plan: &RoomPlan, robot: &Robot, sensor: usize, seen: &Pose, us: f64) -> bool {
         let room = plan.scene().and_then(|scene| scene.with_room(Some(Room::DEFAULT)));
         let without = room.ok().and_then(|scene| alone(scene, robot, sensor, seen, 1, 0));

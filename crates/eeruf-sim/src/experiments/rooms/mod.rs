@@ -1,7 +1,7 @@
 //! Rooms in which rings are judged.
 //!
 //! The paper's sets ask how a method does before three walls and among poles; whoever mounts a ring asks how it does in
-//! rooms like theirs. [`RoomPlan`] is a versioned set of rooms of eight [kinds](RoomKind), or a room of the caller's own;
+//! rooms like theirs. [`RoomPlan`] is a room of a versioned set of eight [kinds](RoomKind), or the caller's own;
 //! [`measure`](super::measure) runs each way of firing a ring in each.
 
 mod group;

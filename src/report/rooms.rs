@@ -67,9 +67,9 @@ fn kinds(answer: &RoomsAnswer) -> String {
     let mut titles: Vec<&str> = baseline.iter().map(|way| way.title.as_str()).collect();
     titles.dedup();
     format!(
-        "\n{}\nms until what appears is seen: mean, t95. {rooms} rooms each; {speed_m_s} m/s, {turn_deg_s} degrees/s.\n\
+        "\n{}\nms until what appears is seen: mean, t95 (95 of 100); {rooms} rooms each.\n\
          cost: mean relative to the baseline's ({}).\n\
-         t95: for 95 of 100. stops: false, a minute. blind: right in under 5 % of firings.\n",
+         {speed_m_s} m/s, {turn_deg_s} degrees/s. stops: false, a minute. blind: right in under 5 %.\n",
         markdown(&header, rows),
         titles.join("; ")
     )

@@ -19,7 +19,7 @@ impl World {
     ///
     /// ```
     /// use eeruf_sim::*;
-    /// A pillar of 0.6 m between a robot and a wall: no sound returns from behind it.
+    /// // A pillar of 0.6 m between a robot and a wall: no sound returns from behind it.
     /// let straight_through = |physics| -> Result<usize, Box<dyn std::error::Error>> {
     ///     let wall = Wall::new(4.0, -5.0, 4.0, 5.0).with_faces(Faces::Both);
     ///     let scene = Scene::new(vec![wall], vec![Pole::new(2.0, 0.0, 0.6)], Air::default())?;

@@ -324,14 +324,14 @@ fn built(folder: &Path, board: Board, text: &str) -> Result<(std::path::PathBuf,
 /// The rate of `OBSTACLE_DISTANCE` messages of a car's sketch, the last of which must show the wall of each module.
 fn obstacles(world: &Path, folder: &Path, seconds: u32) -> Result<String> {
     let (elf, pins) = built(folder, Board::Uno, &sketch_in(folder)?)?;
-    // Ahead, left, right, behind, at 1 to 4 m: the sector that looks there, of 5 degrees clockwise from -20 on.
+    // Ahead, left, right, behind, at 1 to 3.9 m: the sector that looks there, of 5 degrees clockwise from -20 on.
     let ways = folder.join("walls.txt");
-    fs::write(&ways, "0 0 5828\n1 1 11655\n2 2 17483\n3 3 23310\n")?;
+    fs::write(&ways, "0 0 5828\n1 1 11655\n2 2 17483\n3 3 22727\n")?;
     let sectors = [4, 58, 22, 40];
     let ran = world::command(world, &[], &elf, seconds, &ways, &pins).output()?;
     let frames: Vec<_> = (0..ran.stdout.len()).filter_map(|at| sectors_in(&ran.stdout[at..])).collect();
     let last = frames.last().context("no OBSTACLE_DISTANCE")?;
-    for (sector, metres) in sectors.into_iter().zip([100, 200, 300, 400]) {
+    for (sector, metres) in sectors.into_iter().zip([100, 200, 300, 390]) {
         ensure!(last[sector].abs_diff(metres) <= 1, "sector {sector}: {} cm; expected {metres}", last[sector]);
     }
     let rate = frames.len() as u32 / seconds;

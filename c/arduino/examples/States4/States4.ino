@@ -1,6 +1,6 @@
 // Four HC-SR04 modules with trigger and echo on one pin each, 2 to 5, for a robot that checks its surroundings now and
-// then: twenty times a second it prints what is in front of each module, since when, or why nothing is known. One
-// read() takes up to 0.7 ms on an Uno.
+// then: twenty times a second it prints what is in front of each module, since when, or why nothing is known.
+// One read() takes up to 0.7 ms on an Uno.
 #include <EerufTables.h>
 
 const uint8_t PINS[] = {2, 3, 4, 5};

@@ -129,7 +129,9 @@ def test_four_of_twelve_have_a_rotation_of_their_own(ring):
         hear(message)
 
     ring.ardupilot.hear = noting
-    ring.show([0.5 + 0.1 * sensor for sensor in range(SENSORS)])
+    # On a busy machine the first may begin amid a round, with one of a face's two sensors.
+    for _ in range(2):
+        ring.show([0.5 + 0.1 * sensor for sensor in range(SENSORS)])
     assert heard == {0: (0, 50), 3: (6, 80), 6: (4, 110), 9: (2, 140)}
     # Of two in a face the nearer: sensors 1 and 2 look into the one at 315 degrees.
     nearest = {0: 0.5, 7: 0.6, 6: 0.8, 5: 0.9, 4: 1.1, 3: 1.2, 2: 1.4, 1: 1.5}

@@ -81,19 +81,13 @@ pub(crate) fn run(
     watch: &Watch,
 ) -> Result<Answer, InputError> {
     let bad = |why: String| InputError::new(file, why);
-    let (mut way, robot) = args.fires(design, in_rooms, watch)?.map_err(bad)?;
+    let (way, robot) = args.fires(design, in_rooms, watch)?.map_err(bad)?;
     let folder = args.out.clone().unwrap_or_else(|| PathBuf::from(file.file_stem().unwrap_or_default()));
     let name = plain(&folder);
     let (text, shown) = (Kind::Ring.read(file)?, file.file_name().unwrap_or_default().to_string_lossy());
-    let wanted = |way| Wanted { file: (&shown, &text), design, robot: &robot, way, mavlink: args.mavlink, name: &name };
-    let mut written = program(&wanted(way), language, args.board);
-    // Flow is what a program has in every language.
-    if written.is_err() && args.way.is_none() {
-        way = Way::Flow;
-        written = program(&wanted(way), language, args.board);
-    }
-    let program = written.map_err(bad)?;
-    // What somebody may have changed by hand stays.
+    let wanted = Wanted { file: (&shown, &text), design, robot: &robot, way, mavlink: args.mavlink, name: &name };
+    let program = program(&wanted, language, args.board).map_err(bad)?;
+    // Files that somebody may have changed by hand stay.
     let there = program.files.iter().map(|(path, _)| folder.join(path)).find(|path| path.exists());
     if let Some(there) = there {
         return Err(InputError::new(&there, "it is there already; expected a new folder, by --out DIR"));

@@ -1,5 +1,6 @@
 //! Ways of firing judged in rooms, as text and as JSON.
 
+use std::collections::BTreeSet;
 use std::fmt::Write as _;
 
 use eeruf_design::{JudgedWay, KindCost, RoomsAnswer};
@@ -41,7 +42,7 @@ fn verdict(name: &str, answer: &RoomsAnswer) -> String {
     text
 }
 
-/// Writes the table of the best one by one and of the kinds as programs have them, and its columns in words.
+/// Writes the table of the best one by one and of the kinds that can be recommended, and its columns in words.
 fn kinds(answer: &RoomsAnswer) -> String {
     let RoomsAnswer { kinds, baseline, speed_m_s, turn_deg_s, rooms, .. } = answer;
     let among = |best: &&JudgedWay, others: bool| best.condition.ends_with("_others") == others;
@@ -62,10 +63,11 @@ fn kinds(answer: &RoomsAnswer) -> String {
     let both = |kind: &str, cost: Option<&Estimate>, best: &[JudgedWay]| {
         [row(kind, cost, best, false), row(kind, cost, best, true)]
     };
-    let of_kind = |KindCost { kind, cost, best }: &KindCost| both(kind, cost.as_ref(), best);
-    let rows = both("baseline", None, baseline).into_iter().chain(kinds.iter().flat_map(of_kind)).flatten();
-    let mut titles: Vec<&str> = baseline.iter().map(|way| way.title.as_str()).collect();
-    titles.dedup();
+    let of_kind = |KindCost { kind, cost, best, .. }: &KindCost| both(kind, cost.as_ref(), best);
+    let candidates = kinds.iter().filter(|kind| kind.is_candidate);
+    let rows = both("baseline", None, baseline).into_iter().chain(candidates.flat_map(of_kind)).flatten();
+    let titles: BTreeSet<&str> = baseline.iter().map(|way| way.title.as_str()).collect();
+    let titles: Vec<_> = titles.into_iter().collect();
     format!(
         "\n{}\nms until what appears is seen: mean, t95 (95 of 100); {rooms} rooms each.\n\
          cost: mean relative to the baseline's ({}).\n\

@@ -75,7 +75,7 @@ fn strangers_find_their_ways_from_readme_and_type_what_works() {
     );
     assert!(of("diagnose").contains("who is fooled | by whom"), "{}", of("diagnose"));
     assert!(of("verify").contains("verified"), "{}", of("verify"));
-    assert!(of("--program rust").contains("of a ring that fires in groups"), "{}", of("--program rust"));
+    assert!(of("--program rust").contains("of a ring that fires by flow"), "{}", of("--program rust"));
 }
 
 /// Returns the cell of a table's row under a heading.

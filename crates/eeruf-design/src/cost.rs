@@ -19,12 +19,12 @@ pub const CHOICE: u64 = 1_000;
 /// Divisor of the number of rooms for conditions that the file does not name.
 const LESS: u64 = 3;
 /// Factor of the number of rooms for two ways that do not differ significantly.
-const MORE: u64 = 3;
+const MORE: u64 = 6;
 
 /// Ways of firing a ring, judged in rooms.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RoomsAnswer {
-    /// The way to recommend; none if no way that a program has can fire the ring.
+    /// The way to recommend: one by one or flow; none if neither can fire the ring.
     #[serde(rename = "recommended", serialize_with = "name")]
     pub best: Option<RoomWay>,
     /// True if it has at most one false stop a minute under each condition; else it has the fewest.
@@ -62,6 +62,8 @@ fn name<S: Serializer>(best: &Option<RoomWay>, serializer: S) -> Result<S::Ok, S
 pub struct KindCost {
     /// The name.
     pub kind: String,
+    /// True if it can be [recommended](Way::is_recommended).
+    pub is_candidate: bool,
     /// The cost: the geometric mean over the conditions of the mean time until a thing is seen, relative to the best
     /// one by one; `None` if it has more than one false stop a minute under a condition.
     pub cost: Option<Estimate>,
@@ -141,6 +143,33 @@ impl Both {
         costs.recommended.map(|index| programs[index].0.to_string())
     }
 
+    /// Compares the ways of two programs, the simpler first, in more rooms: the one to recommend, and the other if it
+    /// costs less, but not significantly, each by its index.
+    fn in_more_rooms(
+        &self,
+        two: [(Family, usize); 2],
+        run: impl FnOnce(&[RoomWay]) -> Result<Measured, String>,
+    ) -> Result<[Option<usize>; 2], String> {
+        let kept = two.map(|(_, way)| way);
+        let (chosen, two) = only(&self.chosen, &two, &kept);
+        let mut measured = self.measured.only(|_| true, |way| kept.contains(&way));
+        measured.add(run(&measured.ways)?);
+        let groups: Vec<_> = two.iter().map(|&(_, way)| as_program(way)).collect();
+        let Costs { recommended, draw, .. } = measured.costs(&chosen, &groups[0], &groups);
+        Ok([recommended, draw])
+    }
+
+    /// The way of the program with the fewest false stops, for rings where none keeps to one a minute.
+    fn with_fewest_stops(&self, programs: &[(Family, usize)]) -> Option<usize> {
+        let stops = |way: usize| {
+            let judged = self.judged(&as_program(way));
+            let under_all = judged.len() == self.measured.under.len();
+            under_all.then(|| judged.iter().map(|of| of.figures.false_stops_per_min.value).sum::<f64>())
+        };
+        let fired = programs.iter().filter_map(|&(_, way)| Some((way, stops(way)?)));
+        fired.min_by(|one, other| one.1.total_cmp(&other.1)).map(|(way, _)| way)
+    }
+
     /// The best of some points under each condition.
     fn judged(&self, points: &[Point]) -> Vec<JudgedWay> {
         let Self { chosen, measured } = self;
@@ -196,6 +225,12 @@ fn with_program(spec: &RingSpec, chosen: &Measured) -> Vec<(Family, usize)> {
     Family::ALL.into_iter().filter_map(of_family).collect()
 }
 
+/// Those of the programs that can be recommended.
+fn recommendable(measured: &Measured, programs: &[(Family, usize)]) -> Vec<(Family, usize)> {
+    let is_usable = |of: &&(Family, usize)| Way::of(&measured.ways[of.1]).is_some_and(Way::is_recommended);
+    programs.iter().filter(is_usable).copied().collect()
+}
+
 impl RingSpec {
     /// The conditions under which the ring is used: standing, driving and turning, alone; and if the file says that
     /// there are other robots, beside one of its make.
@@ -246,42 +281,29 @@ impl RingSpec {
         let (chosen, programs) = if asked.all { (chosen, programs) } else { only(&chosen, &programs, &kept) };
         let measured = run(&chosen.ways, used, asked)?;
         let here = Both { chosen, measured };
-        let Costs { costs, mut recommended, mut draw } = here.costs(&programs);
+        let costs = here.costs(&programs).costs;
+        let usable = recommendable(&here.measured, &programs);
+        let Costs { mut recommended, mut draw, .. } = here.costs(&usable);
         if let (Some(one), Some(other), true) = (recommended, draw, asked.own.is_empty()) {
-            // Two that overlap are compared in more rooms.
-            let two = [programs[one], programs[other]];
-            let (chosen, two) = only(&here.chosen, &two, &two.map(|(_, way)| way));
-            let ways: Vec<usize> = [one, other].map(|index| programs[index].1).into();
-            let mut measured = here.measured.only(|_| true, |way| ways.contains(&way));
             let first = asked.first.saturating_add(asked.places);
             let more = RoomsAsked { first, places: asked.places * (MORE - 1), ..asked.clone() };
-            measured.add(run(&measured.ways, used, &more)?);
-            let groups: Vec<_> = two.iter().map(|&(_, way)| as_program(way)).collect();
-            let costs = measured.costs(&chosen, &groups[0], &groups);
-            recommended = costs.recommended.map(|index| [one, other][index]);
-            draw = costs.draw.map(|index| [one, other][index]);
+            let ways = [one, other].map(|index| usable[index]);
+            let of_two = here.in_more_rooms(ways, |ways| run(ways, used, &more))?;
+            [recommended, draw] = of_two.map(|of| of.map(|index| [one, other][index]));
         }
         let kind_of = |family: Family| {
             let index = programs.iter().position(|of| of.0 == family);
             KindCost {
                 kind: family.to_string(),
+                is_candidate: usable.iter().any(|of| of.0 == family),
                 cost: index.and_then(|index| costs[index].cost),
                 best: index.map_or_else(Vec::new, |index| here.judged(&as_program(programs[index].1))),
             }
         };
         let kinds: Vec<_> = Family::ALL.into_iter().map(kind_of).collect();
-        // Where none keeps to one a minute, the fewest false stops.
-        let stops = |&&(family, _): &&(Family, usize)| {
-            let of = kinds.iter().filter(|kind| kind.kind == family.to_string()).flat_map(|kind| &kind.best);
-            of.map(|best| best.figures.false_stops_per_min.value).sum::<f64>()
-        };
-        let fires = |of: &&(Family, usize)| here.measured.under.iter().all(|under| under.sights[of.1].is_ok());
-        let best = recommended.map(|index| programs[index]).or_else(|| {
-            let fewest = programs.iter().filter(fires).min_by(|one, other| stops(one).total_cmp(&stops(other)));
-            fewest.copied()
-        });
+        let best = recommended.map_or_else(|| here.with_fewest_stops(&usable), |index| Some(usable[index].1));
         let named = |condition: Condition| condition.as_str().to_owned();
-        let alone = |both: &Both, under| (named(under), both.recommended(&programs, Some(under)));
+        let alone = |both: &Both, under| (named(under), both.recommended(&usable, Some(under)));
         let mut elsewhere: Vec<_> = used.iter().map(|&under| alone(&here, under)).collect();
         let mut every = vec![];
         if asked.all {
@@ -299,18 +321,18 @@ impl RingSpec {
                 elsewhere.extend(unused.iter().map(|&under| alone(&there, under)));
             }
             let other = there(&with_other_gain(&robot), used)?;
-            elsewhere.push(("other gain".to_owned(), other.recommended(&programs, None)));
+            elsewhere.push(("other gain".to_owned(), other.recommended(&usable, None)));
         }
         Ok(RoomsAnswer {
             keeps: recommended.is_some(),
-            draw: draw.map(|index| programs[index].0.to_string()),
+            draw: draw.map(|index| usable[index].0.to_string()),
             assumed,
             speed_m_s,
             turn_deg_s,
             rooms: here.measured.under.first().map_or(0, |under| under.places.len()),
-            conditions: best.map_or_else(Vec::new, |(_, way)| here.conditions(way)),
+            conditions: best.map_or_else(Vec::new, |way| here.conditions(way)),
             baseline: here.judged(&here.chosen.families()[0]),
-            best: best.map(|(_, way)| here.measured.ways[way].clone()),
+            best: best.map(|way| here.measured.ways[way].clone()),
             kinds,
             elsewhere,
             ways: every,
@@ -318,7 +340,7 @@ impl RingSpec {
     }
 }
 
-/// The measurement of some of the ways, with programs numbered anew.
+/// Returns the measurement of some of the ways, and the programs with their indices in it.
 fn only(chosen: &Measured, programs: &[(Family, usize)], kept: &[usize]) -> (Measured, Vec<(Family, usize)>) {
     let index = |way: usize| (0..way).filter(|way| kept.contains(way)).count();
     let programs = programs.iter().map(|&(family, way)| (family, index(way))).collect();

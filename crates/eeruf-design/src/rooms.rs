@@ -77,12 +77,12 @@ impl RingSpec {
         self.speed_mm_s.filter(|&mm| mm > 0).map_or(USUAL_SPEED_M_S, |mm| f64::from(mm) / 1e3)
     }
 
-    /// The rate at which its robot turns in rooms, in degrees a second: the ring's, or 45, a choice.
+    /// The rate at which the ring's robot turns in rooms, in degrees a second: the file's, or else 45, a choice.
     pub fn room_turn_deg_s(&self) -> f64 {
         self.turn_deg_s.filter(|&deg_s| deg_s > 0.0).unwrap_or(USUAL_TURN_DEG_S)
     }
 
-    /// A short schedule of two phases, proven or not, for judging it in rooms; none where there is none.
+    /// A short schedule of two phases, proven or not, for judging it in rooms; `None` if there is none.
     ///
     /// # Errors
     /// As for [`RingSpec::shortest`].

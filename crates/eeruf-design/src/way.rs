@@ -2,10 +2,11 @@
 
 use eeruf_core::flow::{InTurn, TurnSettings, Votes};
 use eeruf_core::plan::Plan as _;
-use eeruf_core::{EachSensor, Instant, MAX_SENSORS, Micros, SensorLimits};
+use eeruf_core::{EachSensor, Instant, MAX_SENSORS, SensorLimits};
 use eeruf_sim::Robot;
 use eeruf_sim::experiments::measure::RoomWay;
 use eeruf_sim::methods::Method;
+use eeruf_sim::world::FiringTable;
 use serde::Serialize;
 
 use crate::flow::FlowDesign;
@@ -65,10 +66,21 @@ impl Way {
         }
     }
 
-    /// The way of a program that corresponds to one judged in rooms; `None` if there is none.
+    /// Returns true if the way is recommended where it costs least. Two phases need firings on time, and among sensors
+    /// that fire together only distance keeps foreign sound out.
+    pub const fn is_recommended(self) -> bool {
+        matches!(self, Self::Sequential | Self::Flow)
+    }
+
+    /// The way of a program that corresponds to one judged in rooms; `None` if there is none. One by one believes every
+    /// echo, so each sensor has the air for itself while it listens.
     pub fn of(way: &RoomWay) -> Option<Self> {
         match way.method {
-            Method::Sequential | Method::Table => Some(Self::Sequential),
+            Method::Sequential => Some(Self::Sequential),
+            Method::Table => {
+                let gap = way.robot.firing.table.as_ref()?.gap();
+                (gap >= way.robot.window).then_some(Self::Sequential)
+            }
             Method::FarGroups => Some(Self::Groups),
             Method::Eeruf => Some(Self::TwoPhases),
             Method::Flow => Some(Self::Flow),
@@ -141,8 +153,8 @@ impl RingSpec {
             Way::Flow => self.flow_of(&robot.clone().by_flow(), seed),
             _ => self.flow_of(robot, seed),
         };
-        if let (Way::Sequential, Some(table)) = (way, &robot.firing.table) {
-            flow.turns.most = Micros::new(table.period.as_micros() / robot.sensors.len().max(1) as u32);
+        if let (Way::Sequential, Some(gap)) = (way, robot.firing.table.as_ref().map(FiringTable::gap)) {
+            flow.turns.most = gap.max(flow.window);
         }
         if matches!(way, Way::Sequential | Way::Groups) {
             flow.turns = flow.turns.one_by_one();
@@ -202,8 +214,9 @@ mod tests {
         assert_eq!(groups.groups, [[0, 4], [1, 5], [2, 6], [3, 7]]);
         assert_eq!((groups.order.len(), groups.votes), (8, "every_echo"));
         assert_eq!(how("blocking"), None);
-        // Gaps are those that were measured.
-        assert_eq!(how("one_by_one_20ms").and_then(|how| how.gaps_us), Some([20_000; 2]));
+        // Gaps are those that were measured; none is shorter than a sensor listens.
+        assert_eq!(how("one_by_one_33ms").and_then(|how| how.gaps_us), Some([33_000; 2]));
+        assert_eq!(how("one_by_one_20ms"), None);
     }
 
     #[test]

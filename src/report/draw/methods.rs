@@ -25,7 +25,7 @@ fn in_percent(share: Option<f64>) -> Option<f64> {
 pub(crate) fn methods_chart(summaries: &[Summary]) -> Picture {
     let bottom = TOP + LANE * summaries.len() as f64;
     let mut picture = Picture::new(WIDTH, bottom + 44.0);
-    picture.text("Readings by each method in one scene, on one seed; flow is the way recommended", (16.0, 22.0), TITLE);
+    picture.text("Readings by each method in one scene, on one seed; flow is shaded", (16.0, 22.0), TITLE);
     for (lane, summary) in summaries.iter().enumerate() {
         let y = TOP + LANE * (lane as f64 + 0.5);
         if summary.method == Method::Flow {

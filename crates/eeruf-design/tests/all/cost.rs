@@ -23,7 +23,7 @@ fn ring_is_judged_as_its_file_says_that_it_is_used() {
     assert!(alone.kinds[0].cost.is_some_and(|cost| (0.9..3.0).contains(&cost.value)), "{:?}", alone.kinds[0]);
     let best = alone.best.as_ref().expect("a way");
     assert!(kinds.contains(&&*best.family.to_string()) && Way::of(best).is_some(), "{alone:?}");
-    // What is said of the recommended way is what its kind measured.
+    // The recommended way has the figures of its kind.
     let kind = alone.kinds.iter().find(|kind| kind.kind == best.family.to_string()).unwrap();
     let of_kind: Vec<_> = kind.best.iter().map(|of| (of.condition, of.figures.t95_ms.value, &*of.votes)).collect();
     assert_eq!(alone.conditions.iter().map(|of| (of.condition, of.t95_ms, "1/1")).collect::<Vec<_>>(), of_kind);

@@ -282,7 +282,7 @@ impl Doctor {
                 seen.iter().filter(|(_, of)| of.share > 0.9 * most).map(|&(other, _)| other).collect();
             let Some(&by) = alike.first() else { continue };
             let senders = alike.iter().map(|&other| name(other)).collect::<Vec<_>>().join(" or ");
-            // What the pattern alone could not show is answered.
+            // Drop the reasons that the sender's pattern has answered.
             let is_known = found.verdict == LogVerdict::Crosstalk;
             found.reasons.retain(|_| is_known);
             found.verdict = LogVerdict::Crosstalk;

@@ -57,6 +57,13 @@ pub struct FiringTable {
     pub rows: Vec<Vec<Micros>>,
 }
 
+impl FiringTable {
+    /// Returns the mean time from one firing to the next.
+    pub fn gap(&self) -> Micros {
+        Micros::new(self.period.as_micros() / self.rows.first().map_or(1, |row| row.len().max(1)) as u32)
+    }
+}
+
 impl Sketch {
     /// Finds the first setting that is invalid for this many sensors with this window; returns its name in files, its
     /// value, and the expected range.

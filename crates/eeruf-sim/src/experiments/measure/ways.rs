@@ -71,7 +71,7 @@ impl RoomWay {
             robot: Robot { period, odometry: true, ..robot.clone() },
             options: Options::default(),
         };
-        // What a module is not triggered before, and what it may still hear of its own sound.
+        // The module's rest, and the time for which its own sound may still be heard.
         let rest = robot.module_rest().max(robot.audible).max(robot.window).saturating_add(Micros::new(1));
         let mut ways = vec![way(Family::OneByOne, "sequential", Method::Sequential, rest)];
         let sensors = robot.sensors.len() as u32;
@@ -111,10 +111,7 @@ impl RoomWay {
             "eeruf" => "two phases (EERUF)".to_owned(),
             name => match &self.robot.firing.table {
                 // With few sensors their rest counts, not the gap that was asked for.
-                Some(table) => {
-                    let gap_us = table.period.as_micros() / self.robot.sensors.len().max(1) as u32;
-                    format!("one by one, {:.0} ms apart", f64::from(gap_us) / 1e3)
-                }
+                Some(table) => format!("one by one, {:.0} ms apart", f64::from(table.gap().as_micros()) / 1e3),
                 None => name.to_owned(),
             },
         };

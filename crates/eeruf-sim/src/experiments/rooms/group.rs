@@ -3,7 +3,7 @@
 use super::plan::{DRIVING_S, RoomKind, RoomPlan};
 use crate::{maps::OccupancyGrid, world::World};
 
-/// Rooms whose figures are given together.
+/// Rooms whose figures are combined.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RoomGroup {
     /// The name in tables and in JSON.
@@ -20,8 +20,8 @@ impl RoomGroup {
         Self { name: kind.to_string(), rooms }
     }
 
-    /// The room of a world, for a ring that stands where the world's first robot does, and drives as far as that one
-    /// would; none for a world without a robot.
+    /// The room of a world, for a ring in the place of the world's first robot, with as much free way; `None` for a
+    /// world without a robot.
     pub fn of_world(name: String, number: u64, world: &World) -> Option<Self> {
         let robot = world.robots().first()?;
         let way_m = robot.motion.at(&robot.pose, DRIVING_S).pose.translation.vector - robot.pose.translation.vector;
@@ -30,8 +30,8 @@ impl RoomGroup {
         Some(Self { name, rooms: vec![plan] })
     }
 
-    /// Places in a map, as [`of_kind`](Self::of_kind) has rooms of a kind: half of the robots stand square to it. They
-    /// are drawn from what is known to be free.
+    /// Places in the known free space of a map, like the rooms of [`of_kind`](Self::of_kind): half of the robots stand
+    /// square to it.
     ///
     /// # Errors
     /// The width for which no free space was found.

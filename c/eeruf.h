@@ -567,7 +567,7 @@ enum {
 
 /* A ring of HC-SR04 modules, with their own times at 20 degrees Celsius, as `eeruf design` has them. */
 #define EERUF_FLOW_HC_SR04(sensors)                                                                                    \
-    {EERUF_VERSION, sensors, 23310, 117, 6028, 33159, 60000, 2000, 1, 80, 150, 150, 8, 4, 0, 0, 0, NULL, NULL}
+    {EERUF_VERSION, sensors, 24310, 117, 6028, 33159, 60000, 2000, 1, 80, 150, 150, 8, 4, 0, 0, 0, NULL, NULL}
 
 /* One sensor of a flow ring, in place of an EerufSensor: 42 bytes on an AVR. Not for the caller. */
 typedef struct EerufFlowSensor {

@@ -18,7 +18,7 @@ _UNIT_US, _TOO_FAR_US, _TOLD_US, _HEARD_US = 4, 1000, 500000, 250000
 # It has shown of its firing that it listened; nothing; that its line is high, whose fall makes silence count; that it was before.
 _LISTENED, _NOTHING, _HELD, _STUCK = range(4)
 _MOST_OFF_US, _WIDE, _SILENCE = 300, 510, 1 << 29  # the most that an echo may be off; what stands for more; for silence with a witness
-HC_SR04 = {"window_us": 23310, "blanking_us": 117, "most_us": 33159, "rest_us": 60000}  # a ring of these: Flow(8, **HC_SR04)
+HC_SR04 = {"window_us": 24310, "blanking_us": 117, "most_us": 33159, "rest_us": 60000}  # a ring of these: Flow(8, **HC_SR04)
 
 
 def _check(name, value, least, most):

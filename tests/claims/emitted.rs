@@ -103,7 +103,7 @@ fn emitted_flow_drives_a_ring_whose_modules_rest() {
     let start = Instant::default();
     assert!(FlowRing::<SENSORS>::flow(SENSORS, flow_8::turns(0), BELIEF, CONFIG, start).is_err());
     let mut ring = FlowRing::<SENSORS>::flow(SENSORS, flow_8::turns(77), BELIEF, CONFIG, start).unwrap();
-    assert_eq!((SENSORS, ring.window(), ring.blanking()), (8, Micros::new(23_310), Micros::new(117)));
+    assert_eq!((SENSORS, ring.window(), ring.blanking()), (8, Micros::new(24_310), Micros::new(117)));
     let mut fired = [(0, start); 8];
     while ring.next_deadline().since(start) < Micros::from_millis(1000) {
         let now = ring.next_deadline();

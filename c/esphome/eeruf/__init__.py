@@ -9,8 +9,8 @@ from esphome.const import CONF_ECHO_PIN, CONF_ID, CONF_TRIGGER_PIN, DEVICE_CLASS
 AUTO_LOAD = ["sensor"]
 RING = cg.esphome_ns.namespace("eeruf").class_("Ring", cg.PollingComponent)
 # Window, blanking, least and most quiet, rest, and the longest echo, in us: as `eeruf design --way flow --emit c` says.
-MODULES = {"hc-sr04": (23310, 117, 6028, 33159, 60000, 36000), "jsn-sr04t": (34965, 1166, 8402, 46212, 70000, 56826)}
-MODULES["hc-sr04-clone"] = (23310, 117, 6028, 33159, 210000, 189468)
+MODULES = {"hc-sr04": (24310, 117, 6028, 33159, 60000, 36000), "jsn-sr04t": (35965, 1166, 8402, 46212, 70000, 56826)}
+MODULES["hc-sr04-clone"] = (24310, 117, 6028, 33159, 210000, 189468)
 SENSOR = sensor.sensor_schema(
     unit_of_measurement=UNIT_METER, accuracy_decimals=2, device_class=DEVICE_CLASS_DISTANCE, state_class=STATE_CLASS_MEASUREMENT
 ).extend(

@@ -13,7 +13,7 @@ pub struct FlowDesign {
     pub turns: TurnSettings,
     /// Settings of the ring's judge.
     pub belief: BeliefSettings,
-    /// The longest listening time of the ring's sensors.
+    /// The longest listening time of the ring's sensors, with the time until a module's line rises.
     pub window: Micros,
     /// Deaf time after a firing.
     pub blanking: Micros,
@@ -76,6 +76,9 @@ impl RingSpec {
         belief.top_speed_mm_s = self.speed_mm_s.unwrap_or(0).try_into().unwrap_or(u16::MAX);
         let shares_lines = needs.uneven.is_some_and(|uneven| !uneven.shared_lines.is_empty());
         let is_alike = together.is_empty() && !shares_lines && limits.iter().all(|of| of.window >= window);
+        // A ring file without a module is taken for one of modules that answer by a pulse.
+        let rise_us = self.modules.iter().map(|module| module.interface.rise_us()).max().unwrap_or(1_000);
+        let listens = |echo: Micros| echo.min(window).saturating_add(Micros::new(rise_us));
         let limits = if is_alike {
             EachSensor::NONE
         } else {
@@ -83,13 +86,13 @@ impl RingSpec {
             let t_delta = belief.t_delta;
             EachSensor::for_flow(
                 std::array::from_fn(|sensor| SensorLimits {
-                    window: limits.get(sensor).map_or(window, |of| of.window.min(window)),
+                    window: listens(limits.get(sensor).map_or(window, |of| of.window)),
                     t_delta: limits.get(sensor).map_or(t_delta, |of| of.t_delta.min(t_delta)),
                 }),
                 together,
             )
         };
-        FlowDesign { turns, belief, window, blanking, limits }
+        FlowDesign { turns, belief, window: listens(window), blanking, limits }
     }
 }
 

@@ -81,7 +81,7 @@ impl Settings {
 /// let mut ring = RING.lock().unwrap();
 /// ring.set_seed(0xe661_0001)?;
 /// ring.restart(Instant::from_micros(5_000));
-/// assert_eq!((ring.sensors(), ring.window().as_micros(), ring.blanking().as_micros()), (8, 23_310, 117));
+/// assert_eq!((ring.sensors(), ring.window().as_micros(), ring.blanking().as_micros()), (8, 24_310, 117));
 /// # Ok::<(), eeruf_core::RingError>(())
 /// ```
 ///
@@ -95,7 +95,8 @@ pub const fn flow_ring<const K: usize>(module: &Module) -> Result<FlowRing<K>, R
     let rest = Micros::new(if rest_us > audible { rest_us } else { audible });
     let turns = TurnSettings::for_module(1, window, rest, blanking);
     let turns = TurnSettings { most: Micros::new(audible), least: Micros::new(audible / 11 * 2), ..turns };
-    let config = RingConfig::new().with_window(window).with_blanking(blanking);
+    let listens = window.saturating_add(Micros::new(module.interface.rise_us()));
+    let config = RingConfig::new().with_window(listens).with_blanking(blanking);
     FlowRing::flow(K, turns, BeliefSettings::DEFAULT, config, Instant::from_micros(0))
 }
 

@@ -112,6 +112,14 @@ words! {
     }
 }
 
+impl Interface {
+    /// The time in microseconds by which a ring listens longer than the longest echo lasts: a line that is high during
+    /// the echo rises about half a millisecond after the trigger, and edges are read late.
+    pub const fn rise_us(self) -> u32 {
+        if matches!(self, Self::PulseWidth | Self::OnePin) { 1_000 } else { 0 }
+    }
+}
+
 /// Behaviour of a module where nothing is in range.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum NoEcho {

@@ -134,7 +134,7 @@ impl Ring {
     ///     0
     ///     >>> ring = eeruf.Ring.flow(eeruf.Needs(sensors=8, module="hc-sr04"))
     ///     >>> ring.window_us
-    ///     23310
+    ///     24310
     #[staticmethod]
     #[pyo3(signature = (sensors, settings=None, now_us=None, *, window_us=None, blanking_us=None, reach_us=None,
         several_echoes=None, silence=None, **needs))]

@@ -66,8 +66,7 @@ fn kinds(answer: &RoomsAnswer) -> String {
     let of_kind = |KindCost { kind, cost, best, .. }: &KindCost| both(kind, cost.as_ref(), best);
     let candidates = kinds.iter().filter(|kind| kind.is_candidate);
     let rows = both("baseline", None, baseline).into_iter().chain(candidates.flat_map(of_kind)).flatten();
-    let titles: BTreeSet<&str> = baseline.iter().map(|way| way.title.as_str()).collect();
-    let titles: Vec<_> = titles.into_iter().collect();
+    let titles = Vec::from_iter(BTreeSet::from_iter(baseline.iter().map(|way| way.title.as_str())));
     format!(
         "\n{}\nms until what appears is seen: mean, t95 (95 of 100); {rooms} rooms each.\n\
          cost: mean relative to the baseline's ({}).\n\

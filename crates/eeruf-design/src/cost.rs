@@ -287,8 +287,7 @@ impl RingSpec {
         if let (Some(one), Some(other), true) = (recommended, draw, asked.own.is_empty()) {
             let first = asked.first.saturating_add(asked.places);
             let more = RoomsAsked { first, places: asked.places * (MORE - 1), ..asked.clone() };
-            let ways = [one, other].map(|index| usable[index]);
-            let of_two = here.in_more_rooms(ways, |ways| run(ways, used, &more))?;
+            let of_two = here.in_more_rooms([usable[one], usable[other]], |ways| run(ways, used, &more))?;
             [recommended, draw] = of_two.map(|of| of.map(|index| [one, other][index]));
         }
         let kind_of = |family: Family| {
@@ -300,10 +299,8 @@ impl RingSpec {
                 best: index.map_or_else(Vec::new, |index| here.judged(&as_program(programs[index].1))),
             }
         };
-        let kinds: Vec<_> = Family::ALL.into_iter().map(kind_of).collect();
         let best = recommended.map_or_else(|| here.with_fewest_stops(&usable), |index| Some(usable[index].1));
-        let named = |condition: Condition| condition.as_str().to_owned();
-        let alone = |both: &Both, under| (named(under), both.recommended(&usable, Some(under)));
+        let alone = |both: &Both, under: Condition| (under.as_str().to_owned(), both.recommended(&usable, Some(under)));
         let mut elsewhere: Vec<_> = used.iter().map(|&under| alone(&here, under)).collect();
         let mut every = vec![];
         if asked.all {
@@ -333,7 +330,7 @@ impl RingSpec {
             conditions: best.map_or_else(Vec::new, |way| here.conditions(way)),
             baseline: here.judged(&here.chosen.families()[0]),
             best: best.map(|way| here.measured.ways[way].clone()),
-            kinds,
+            kinds: Family::ALL.into_iter().map(kind_of).collect(),
             elsewhere,
             ways: every,
         })

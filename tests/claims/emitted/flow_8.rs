@@ -4,7 +4,7 @@
 use eeruf_core::flow::{BeliefSettings, TurnSettings};
 use eeruf_core::{Micros, RingConfig};
 
-// 8 sensors that fire one after the other, with 6.028 ms to 33.159 ms of quiet, listening for 23.31 ms.
+// 8 sensors that fire one after the other, with 6.028 ms to 33.159 ms of quiet, listening for 24.31 ms.
 // For `FlowRing::<SENSORS>::flow(SENSORS, turns(seed), BELIEF, CONFIG, now)`.
 pub const SENSORS: usize = 8;
 
@@ -28,4 +28,4 @@ pub const BELIEF: BeliefSettings = {
     belief
 };
 
-pub const CONFIG: RingConfig = RingConfig::new().with_window(Micros::new(23_310)).with_blanking(Micros::new(117));
+pub const CONFIG: RingConfig = RingConfig::new().with_window(Micros::new(24_310)).with_blanking(Micros::new(117));

@@ -6,6 +6,7 @@
 
 #define READY ((uint16_t)(0x4500u + EERUF_VERSION))
 #define NOBODY 255u
+#define UNDECIDED 254u /* the next of a flow ring, until a call after a firing needs it */
 #define HALF_TURN 0x80000000u /* of the clock: beyond it two instants have no order */
 
 /* Sizes that tables and callers rely on. */
@@ -364,6 +365,8 @@ static void end_round(EerufRing *ring, uint32_t now_us);
 static void restart_flow(EerufRing *ring, uint32_t now_us);
 static uint32_t horizon_of_flow(const EerufRing *ring);
 #define FIRINGS(flows) ((flows) ? FLOW_FIRINGS : EERUF_FIRINGS)
+/* Calls of a flow ring's hook: see change_flow. */
+enum { FORGETS = 0, BEGINS_AGAIN = 1, SILENCE_COUNTS = 2, DECIDES = 3 };
 
 static void emit_when_oldest_ends(EerufRing *ring);
 
@@ -623,9 +626,12 @@ static void restart_table(EerufRing *ring, uint32_t now_us) {
 
 /* -- The operations of a ring -- */
 
-static EerufStatus is_ready(const EerufRing *ring) {
+/* Also makes a flow ring's decision that its last firing left open. */
+static OUT_OF_LINE EerufStatus is_ready(const EerufRing *ring) {
     if (ring == NULL) return EERUF_ERR_NULL;
-    return ring->ready == READY ? EERUF_OK : EERUF_ERR_NOT_READY;
+    if (ring->ready != READY) return EERUF_ERR_NOT_READY;
+    if (ring->next == UNDECIDED) ring->hook((EerufRing *)(uintptr_t)ring, 0, DECIDES);
+    return EERUF_OK;
 }
 
 static EerufStatus has_sensor(const EerufRing *ring, uint8_t sensor) {
@@ -858,9 +864,6 @@ static void compare(EerufRing *ring, uint8_t x, int32_t change_us, EerufReading 
     else if (filter->age < EERUF_NEVER - 1u) filter->age++;
     reading->age = filter->age;
 }
-
-/* Calls of a flow ring's hook: see change_flow. */
-enum { FORGETS = 0, BEGINS_AGAIN = 1, SILENCE_COUNTS = 2 };
 
 /* Counts a silence whose reading was already emitted. */
 static OUT_OF_LINE void count_silence(EerufRing *ring, uint8_t x) {
@@ -1897,46 +1900,45 @@ typedef struct Waits {
     uint32_t quiet_us, rested_us;
 } Waits;
 
-static OUT_OF_LINE void add_waits(const EerufRing *ring, uint8_t x, Waits *waits) {
-    const EerufFlowRing *flow = (const EerufFlowRing *)(const void *)ring;
-    const uint8_t line = line_of(flow, x);
-    uint32_t quiet_us = longer(waits->quiet_us, quiet_of(flow, flow_sensor(ring, x))), rested_us = waits->rested_us;
-    uint8_t other;
-    for (other = 0; other < ring->count; other++) {
-        const EerufFlowSensor *sensor = flow_sensor(ring, other);
-        const uint8_t listens = sensor->filter.flags & LISTENING;
-        uint32_t window_us;
-        if (!(sensor->filter.state & HAS_FIRED)) continue;
-        if (other == x) rested_us = longer(rested_us, since_last(ring, sensor->turn_us, flow->rest_us));
-        if (!listens && (line == 0 || line_of(flow, other) != line)) continue;
-        window_us = window_of(ring, other);
-        if (other == x) {
-            if (listens) rested_us = longer(rested_us, since_last(ring, sensor->turn_us, window_us));
-            continue;
-        }
-        /* Sound after the window does not matter, however late it is reported. */
-        if (listens)
-            quiet_us = longer(quiet_us, since_last(ring, sensor->turn_us, shorter(quiet_of(flow, sensor), window_us)));
-        if (line > 0 && line_of(flow, other) == line)
-            rested_us = longer(rested_us, since_last(ring, sensor->turn_us, window_us));
-    }
-    waits->quiet_us = quiet_us;
-    waits->rested_us = rested_us;
+/* True if `other` is this sensor, or an enabled one that fires together with it. */
+static bool fires_with(const EerufRing *ring, uint8_t x, uint8_t other) {
+    return x == other || (is_deaf_to(ring, x, other) && !(flow_sensor(ring, other)->filter.state & DISABLED));
 }
 
-/* True if an enabled sensor fires together with another one. */
-static bool fires_with(const EerufRing *ring, uint8_t x, uint8_t other) {
-    return limited != NULL && limited(ring, TOGETHER, x, other) != 0 &&
-           !(flow_sensor(ring, other)->filter.state & DISABLED);
+/* True if a sensor shares its echo line with another one, which is `x` or fires with it. */
+static bool shares_line(const EerufRing *ring, uint8_t sensor, uint8_t x) {
+    const EerufFlowRing *flow = (const EerufFlowRing *)(const void *)ring;
+    const uint8_t line = line_of(flow, sensor);
+    uint8_t other;
+    for (other = 0; line > 0 && other < ring->count; other++)
+        if (other != sensor && line_of(flow, other) == line && fires_with(ring, x, other)) return true;
+    return false;
 }
 
 /* The waits of a sensor and of the sensors that fire with it. */
-static Waits waits_of(const EerufRing *ring, uint8_t x) {
+static OUT_OF_LINE Waits waits_of(const EerufRing *ring, uint8_t x) {
+    const EerufFlowRing *flow = (const EerufFlowRing *)(const void *)ring;
     Waits waits = {0, 0};
+    uint32_t own_us = 0; /* the quiet that `x` still needs for its last firing: only others of its group heed it */
+    bool has_others = false;
     uint8_t other;
-    add_waits(ring, x, &waits);
-    for (other = 0; other < ring->count && limited != NULL; other++)
-        if (fires_with(ring, x, other)) add_waits(ring, other, &waits);
+    for (other = 0; other < ring->count; other++) {
+        const EerufFlowSensor *sensor = flow_sensor(ring, other);
+        const bool is_with = fires_with(ring, x, other), shares = shares_line(ring, other, x);
+        const uint8_t listens = sensor->filter.flags & LISTENING;
+        uint32_t window_us, *quiet_us = other == x ? &own_us : &waits.quiet_us;
+        if (is_with) waits.quiet_us = longer(waits.quiet_us, quiet_of(flow, sensor));
+        has_others |= is_with && other != x;
+        if (!(sensor->filter.state & HAS_FIRED)) continue;
+        if (is_with) waits.rested_us = longer(waits.rested_us, since_last(ring, sensor->turn_us, flow->rest_us));
+        if (!listens && !shares) continue;
+        window_us = window_of(ring, other);
+        if (is_with || shares) waits.rested_us = longer(waits.rested_us, since_last(ring, sensor->turn_us, window_us));
+        /* Sound after the window does not matter, however late it is reported. */
+        window_us = shorter(quiet_of(flow, sensor), window_us);
+        if (listens) *quiet_us = longer(*quiet_us, since_last(ring, sensor->turn_us, window_us));
+    }
+    if (has_others) waits.quiet_us = longer(waits.quiet_us, own_us);
     return waits;
 }
 
@@ -1952,11 +1954,9 @@ static void group(EerufRing *ring) {
 }
 
 static bool is_coprime(uint8_t a, uint8_t b) {
-    while (b > 0) {
-        const uint8_t rest = (uint8_t)(a % b);
-        a = b;
-        b = rest;
-    }
+    while (a != b)
+        if (a > b) a = (uint8_t)(a - b);
+        else b = (uint8_t)(b - a);
     return a == 1;
 }
 
@@ -2038,10 +2038,11 @@ static void fire_flow(EerufRing *ring, uint8_t x, uint32_t now_us) {
             flow->flags |= ONE_AHEAD;
         }
         for (other = 0; other < ring->count && limited != NULL; other++)
-            if (fires_with(ring, x, other)) flow_sensor(ring, other)->filter.state |= PENDING;
+            if (other != x && fires_with(ring, x, other)) flow_sensor(ring, other)->filter.state |= PENDING;
         throw_dice(flow);
     }
-    decide(ring);
+    /* The trigger comes first: the decision may take a millisecond, and lines that rise late are not believed. */
+    ring->next = UNDECIDED;
 }
 
 /* Sensors that fired ahead have had their turn. */
@@ -2299,15 +2300,16 @@ static void move_turn(EerufRing *ring, EerufFlowSensor *sensor, uint32_t at_us) 
 }
 
 /* The hook of a flow ring: forgets what is known of a sensor, resets its quiet, or counts its silence (the time since
-   the previous firing was counted before). */
+   the previous firing was counted before); before, decides what is still undecided. */
 static void change_flow(EerufRing *ring, uint8_t x, uint32_t what) {
     EerufFlowSensor *sensor = flow_sensor(ring, x);
+    if (ring->next == UNDECIDED) decide(ring);
     if (what == FORGETS) {
         forget_belief(sensor);
     } else if (what == BEGINS_AGAIN) {
         sensor->doubt = flow_of(ring)->first;
         decide_no_sooner(ring);
-    } else {
+    } else if (what == SILENCE_COUNTS) {
         EerufReading silence = {EERUF_NO_ECHO, EERUF_NO_ECHO, 0, USABLE, EERUF_BY_NOTHING};
         weigh(ring, x, grow_since(flow_of(ring), sensor, sensor->fired_us[0]), &silence);
     }

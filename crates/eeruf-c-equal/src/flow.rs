@@ -154,8 +154,12 @@ fn compare<const K: usize, U: OwnLimits>(
             let in_c = c.poll(world.now, None);
             let at = || format!("{origin}, step {step}: {event:?}");
             assert_eq!(in_c, event.as_ref().map(flat).ok_or(0), "{}", at());
-            assert_eq!(c.deadline(), ring.next_deadline().as_micros(), "{}", at());
-            assert_eq!(c.upcoming(), upcoming(ring.upcoming()), "{}", at());
+            // C decides about the next firing when first asked, also by the operations at a firing.
+            let asks = step % 2 == 0 || !matches!(event, Some(RingEvent::Fire { .. }));
+            if asks {
+                assert_eq!(c.deadline(), ring.next_deadline().as_micros(), "{}", at());
+                assert_eq!(c.upcoming(), upcoming(ring.upcoming()), "{}", at());
+            }
             let Some(event) = event else { break };
             count += 1;
             watch.observe(&event, now);
@@ -163,9 +167,11 @@ fn compare<const K: usize, U: OwnLimits>(
                 (world.random.within(0, K as u32) as u8, world.now.wrapping_add(world.random.duration(u32::MAX)));
             let known = watch.state(sensor, Instant::from_micros(later)).map(state).map_err(|_| -5);
             assert_eq!(c.state(sensor, later), known, "{}", at());
-            let quiet = ring.plan().doubt_of(sensor).map_or(0, Micros::as_micros);
-            let believed = echo(ring.judge().believed(sensor));
-            assert_eq!(c.quiet_and_belief(sensor), [quiet, believed], "{}", at());
+            if asks {
+                let quiet = ring.plan().doubt_of(sensor).map_or(0, Micros::as_micros);
+                let believed = echo(ring.judge().believed(sensor));
+                assert_eq!(c.quiet_and_belief(sensor), [quiet, believed], "{}", at());
+            }
             if let RingEvent::Fire { sensor, .. } = event {
                 fired((&mut world, uncertain), &mut c, &mut ring, sensor);
             }

@@ -49,6 +49,8 @@ const CAR_12: &str = "rings/car-12.toml";
 const MAVLINK: &str = "arduino --mavlink";
 /// A crate whose edges a timer's capture registers stamp.
 const CAPTURED: &str = "rust --way flow captured";
+/// A sketch whose modules fire in groups of three, so that a late trigger loses a module.
+const GROUPS: &str = "arduino --way groups";
 /// Programs for the car alone.
 const OF_CAR: [&str; 2] = [MAVLINK, "rust --way two-phases"];
 const RINGS: [&str; 9] = [
@@ -104,6 +106,7 @@ pub(crate) fn programs(drawn: &Drawn, short: bool) -> Result<()> {
         let programs = programs.into_iter().filter(|program| *program != CAPTURED || !load.waits);
         asked.extend(programs.map(|options| Asked::new("6", options, Some(load))));
     }
+    asked.extend((rings > 0).then(|| Asked::new("12", GROUPS, None)));
     for ring in &RINGS[..rings] {
         // Its sensors have limits of their own, which MicroPython's ring has not.
         let languages = &LANGUAGES[..if *ring == CAR_12 { 3 } else { 4 }];

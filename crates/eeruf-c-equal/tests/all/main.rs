@@ -3,6 +3,7 @@
 //! Each test compares 200,000 events, or as many as `EERUF_C_EVENTS` says.
 
 mod constants;
+mod deferred;
 mod line_faults;
 mod odometry;
 mod parts;

@@ -8,7 +8,6 @@ mod constant_depth;
 mod corpus;
 mod diagnose_places;
 mod doctor_alcoves;
-mod driving;
 mod echo_times;
 mod flow_tables;
 mod four_worlds;
@@ -37,7 +36,7 @@ const COMMANDS: [Command; 17] = [
     ("constant-depth", "", "angles at which a wall is heard, by distance and gain", constant_depth::main),
     (
         "diagnose-places",
-        "[FIRST [PLACES [METHOD [PERIODS [PHYSICS [WHERE]]]]]]",
+        "[FIRST [PLACES [METHOD [PERIODS [PHYSICS]]]]]",
         "senders that diagnose names",
         diagnose_places::main,
     ),

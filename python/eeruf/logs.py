@@ -335,8 +335,7 @@ class Diagnosis:
     ``paths`` are columns of equal length, by receiver, best supported first; a sensor's own echo is a path from itself. For each
     firing, ``sender`` is the sensor whose sound was read, or -1 if that is unsure, ``travel_us`` is the sound's travel time, and ``sure``
     the certainty of the sender. ``faults`` are ``("deaf", [sensor])``: others hear its sound, but it hears nothing. Sensors in ``silent``
-    hear nothing, and the log cannot tell why. ``moved`` is true if the robot moved; a path is then a line over one second, with the
-    slope ``paths["rate_us_s"]``.
+    hear nothing, and the log cannot tell why. ``moved`` is true if the robot moved; no path is found then.
     ``most_offsets`` is the largest number of time offsets between the firings of two sensors; below about five, no sender can be named.
 
     Example:

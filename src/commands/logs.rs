@@ -150,6 +150,8 @@ fn by_firings(log: &FiringLog, names: &[String], found: &mut Examination) {
     if !found.fooled.is_empty() {
         (found.verdict, found.record) = (LogVerdict::Crosstalk, None);
         found.reasons.remove(0);
+    } else if diagnosis.moved && found.record.is_some() {
+        found.record = Some("a minute of a robot that stands".to_owned());
     }
 }
 

@@ -1,5 +1,5 @@
 //! `cargo xtask logs`: measurements of logs that take minutes: bags of a million messages, as `rosbags` writes them,
-//! diagnoses in alcoves and while driving, and the data set. Its tests are in `cargo xtask test`.
+//! diagnoses in alcoves, and the data set. Its tests are in `cargo xtask test`.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -15,12 +15,8 @@ const HOME: &str = "target/logs";
 const SIZES: [(u32, [u32; 2]); 2] = [(8, [125_000, 12_500]), (24, [41_667, 4_167])];
 /// Scenes in which senders are named, as arguments of `cargo lab diagnose-places`, and the least share in percent that
 /// must be named; none can be in the paper's two phases.
-const SENDERS: [(&str, f64); 4] = [
-    ("40000 200 flow 1000 plain", 60.0),
-    ("40000 200 flow 1000 default", 60.0),
-    ("20000 40 flow 1000 plain rooms-driving", 25.0),
-    ("40000 200 eeruf 1000 plain", 0.0),
-];
+const SENDERS: [(&str, f64); 3] =
+    [("40000 200 flow 1000 plain", 60.0), ("40000 200 flow 1000 default", 60.0), ("40000 200 eeruf 1000 plain", 0.0)];
 const DATA_CARD: &str = "docs/how-to/dataset.md";
 
 pub(crate) fn logs(steps: &mut Steps) {

@@ -323,7 +323,6 @@ impl Search {
             readings: place.hits.len() as u32,
             heard: place.hits.len() as f64 / f64::from(place.trials.max(1)),
             periods: slots,
-            rate_us_s: None,
         }
     }
 

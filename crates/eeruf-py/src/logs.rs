@@ -194,7 +194,6 @@ fn paths<'py>(py: Python<'py>, paths: &[FoundPath]) -> PyResult<Bound<'py, PyDic
     out.set_item("heard", number(|path| path.heard)?)?;
     out.set_item("first_period", whole(|path| path.periods.0.into())?)?;
     out.set_item("last_period", whole(|path| path.periods.1.into())?)?;
-    out.set_item("rate_us_s", number(|path| path.rate_us_s.unwrap_or(0.0))?)?;
     Ok(out)
 }
 

@@ -15,7 +15,7 @@ pub(crate) fn json(found: &DiagnosisReport<'_>) -> Value {
             object!({
                 "sender": path.sender, "receiver": path.receiver,
                 "travel_us": path.travel_us, "travel_error_us": path.travel_error_us,
-                "rate_us_s": path.rate_us_s, "length_m": found.length_m(path), "scatter_us": path.scatter_us,
+                "length_m": found.length_m(path), "scatter_us": path.scatter_us,
                 "readings": path.readings, "heard": path.heard,
                 "first_period": path.periods.0, "last_period": path.periods.1,
                 "offsets": path.offsets.0, "of_offsets": path.offsets.1, "accidents": path.accidents,

@@ -7,8 +7,6 @@ use eeruf_logs::{FoundPath, Share};
 use super::DiagnosisReport;
 use crate::report::table::markdown;
 
-/// Largest number of paths printed for a driving robot, each of which lasts about a second.
-const MOST_LINES: usize = 30;
 /// The smallest difference of clock rates that is reported, in ppm.
 const APART_PPM: f64 = 10.0;
 
@@ -47,7 +45,7 @@ fn head(found: &DiagnosisReport<'_>) -> String {
         );
     }
     let most = diagnosis.most_offsets;
-    if diagnosis.moved && diagnosis.paths.is_empty() {
+    if diagnosis.moved {
         text +=
             "No sender can be named, and nothing can be said of blind sensors: ranges change while the robot moves.\n";
     } else if diagnosis.paths.is_empty() {
@@ -155,39 +153,23 @@ fn paths(found: &DiagnosisReport<'_>, text: &mut String) {
         return;
     }
     foreign.sort_by_key(|path| std::cmp::Reverse(path.readings));
-    let moved = found.diagnosis.moved;
-    let mut header = vec!["who is fooled", "by whom", "length m"];
-    header.extend(moved.then_some("m/s"));
-    header.extend(["readings", "heard %", "periods", "offsets", "accidents"]);
-    let shown = if moved { foreign.len().min(MOST_LINES) } else { foreign.len() };
-    let rows = foreign[..shown].iter().map(|path| {
-        let mut row = vec![
+    let header = ["who is fooled", "by whom", "length m", "readings", "heard %", "periods", "offsets", "accidents"];
+    let rows = foreign.iter().map(|path| {
+        vec![
             (path.receiver + 1).to_string(),
             (path.sender + 1).to_string(),
             format!("{:.3} +- {:.3}", found.length_m(path), 1.96e-6 * path.travel_error_us * found.speed_of_sound),
-        ];
-        row.extend(path.rate_us_s.map(|rate_us_s| format!("{:+.2}", 1e-6 * rate_us_s * found.speed_of_sound)));
-        row.extend([
             path.readings.to_string(),
             format!("{:.0}", 100.0 * path.heard),
             format!("{} to {}", path.periods.0, path.periods.1),
             format!("{} of {}", path.offsets.0, path.offsets.1),
             format!("{:.0e}", path.accidents),
-        ]);
-        row
+        ]
     });
     _ = writeln!(text, "\n{}", markdown(&header, rows));
-    if shown < foreign.len() {
-        _ = writeln!(text, "And {} more with fewer readings, which --json has.", foreign.len() - shown);
-    }
     *text += "Heard: of the readings in which nothing earlier hid it.\n\
-              Offsets: at how many offsets between the two firings it was heard.\n";
-    *text += if moved {
-        "Length: in the middle of these periods; m/s: its change.\n\
-         Accidents: the chance that none of these readings came along it.\n"
-    } else {
-        "Accidents: how many paths with as much support are expected in the whole log by accident.\n"
-    };
+              Offsets: at how many offsets between the two firings it was heard.\n\
+              Accidents: how many paths with as much support are expected in the whole log by accident.\n";
 }
 
 /// Formats a share with its 95 % interval.

@@ -50,15 +50,10 @@ fn is_unheard(silent: u8, paths: &[FoundPath], timeline: &Timeline, settings: &S
 /// Number of arrivals heard at a path's sender on the way back, and of all arrivals that nothing earlier hid.
 fn heard_back(path: &FoundPath, timeline: &Timeline, tolerance: i64) -> (u32, u32) {
     let (mut heard, mut of) = (0, 0);
-    let lasts = timeline.lasts(path);
-    let middle_us = lasts.start().midpoint(*lasts.end());
-    let travel_us = |at_us: i64| {
-        let moved_us = path.rate_us_s.map_or(0.0, |rate_us_s| 1e-6 * rate_us_s * (at_us - middle_us) as f64);
-        (path.travel_us + moved_us).round() as i64
-    };
-    for firing in timeline.heard_by(path.sender).iter().filter(|of| lasts.contains(&of.fired_us)) {
+    let travel_us = path.travel_us.round() as i64;
+    for firing in timeline.heard_by(path.sender) {
         let sent = timeline.before(firing.fired_us + timeline.window_us).filter(|of| of.1 == path.receiver);
-        for at in sent.map(|(fired_us, _)| fired_us + travel_us(firing.fired_us) - firing.fired_us) {
+        for at in sent.map(|(fired_us, _)| fired_us + travel_us - firing.fired_us) {
             let is_hidden = firing.echo_us.is_some_and(|echo| echo < at - 2 * tolerance);
             if at >= DEAF_US && at + 2 * tolerance <= timeline.window_us && !is_hidden {
                 heard += u32::from(firing.echo_us.is_some_and(|echo| echo <= at + 2 * tolerance));

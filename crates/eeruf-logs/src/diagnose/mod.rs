@@ -14,11 +14,9 @@
 //! log by accident. That takes many phases, or lags that move: with two phases there are two offsets, and no pair can
 //! be named.
 //!
-//! While the robot drives, these times change. A path is then a line over a second, and readings are named one by one
-//! from the readings around them: `moving`.
+//! While the robot drives, these times change, and no sender is named.
 
 mod faults;
-mod moving;
 mod naming;
 mod search;
 mod sensors;
@@ -30,7 +28,6 @@ mod timing;
 use crate::firings::FiringLog;
 use crate::symptom::Finding;
 use faults::faults;
-use moving::follow;
 pub use naming::Named;
 use naming::name_senders;
 use search::paths_to;
@@ -96,7 +93,7 @@ pub struct FoundPath {
     pub sender: u8,
     /// The sensor that hears the sound, from 0.
     pub receiver: u8,
-    /// Travel time of the sound, in microseconds; for a path that moves, at the middle of its times.
+    /// Travel time of the sound, in microseconds.
     pub travel_us: f64,
     /// Standard error of the travel time.
     pub travel_error_us: f64,
@@ -105,8 +102,7 @@ pub struct FoundPath {
     /// Number of different offsets between the two firings that support the path, and of those at which it could be
     /// heard.
     pub offsets: (u32, u32),
-    /// Number of paths with as much support that are expected by accident in the whole log. For a path that moves, the
-    /// probability that the surest of its readings did not come along it.
+    /// Number of paths with as much support that are expected by accident in the whole log.
     pub accidents: f64,
     /// Number of readings along the path.
     pub readings: u32,
@@ -114,8 +110,6 @@ pub struct FoundPath {
     pub heard: f64,
     /// The periods of the first and the last reading that came along it.
     pub periods: (u32, u32),
-    /// Rate at which its travel time changes, in microseconds for each second, if the robot drove.
-    pub rate_us_s: Option<f64>,
 }
 
 /// Findings about a ring from its log.
@@ -129,7 +123,7 @@ pub struct Diagnosis {
     pub hearing: Vec<Hearing>,
     /// Deaf sensors.
     pub faults: Vec<Finding>,
-    /// True if the robot moved: odometry says so, or early ranges do not recur at the end.
+    /// True if the robot moved: odometry says so, or early ranges do not recur at the end. No path is found then.
     pub moved: bool,
     /// The largest number of offsets at which a reading could come from another sensor's firing, over all pairs.
     pub most_offsets: u32,
@@ -161,14 +155,10 @@ pub fn diagnose_while(log: &FiringLog, settings: &Settings, keep_going: KeepGoin
     let mut named = vec![None; log.firings.len()];
     let mut fits_none = vec![false; log.firings.len()];
     let moved = log.drives() || timeline.moved();
-    if moved {
-        paths = follow(&timeline, settings, &mut named, &mut fits_none, keep_going);
-    } else {
-        for receiver in 0..log.sensors() as u8 {
-            let found = paths_to(receiver, &timeline, settings, keep_going);
-            name_senders(receiver, &found, &timeline, settings, &mut named, &mut fits_none);
-            paths.extend(found);
-        }
+    for receiver in (0..log.sensors() as u8).filter(|_| !moved) {
+        let found = paths_to(receiver, &timeline, settings, keep_going);
+        name_senders(receiver, &found, &timeline, settings, &mut named, &mut fits_none);
+        paths.extend(found);
     }
     if !keep_going() {
         return Diagnosis { paths, named, hearing: vec![], faults: vec![], moved, most_offsets: 0 };

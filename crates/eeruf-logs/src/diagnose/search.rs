@@ -304,7 +304,6 @@ impl Search<'_> {
             readings: support.matched.len() as u32,
             heard: support.heard,
             periods,
-            rate_us_s: None,
         }
     }
 }

@@ -61,8 +61,6 @@ fn of_sensor(sensor: u8, log: &FiringLog, paths: &[FoundPath], named: &[Option<N
         phase.0 += 1;
         phase.1 += u32::from(is_own);
     }
-    // While the robot drives, phases are blind for a moment.
-    let moves = paths.iter().any(|path| path.rate_us_s.is_some());
     let has_own_path = paths.iter().any(|path| (path.sender, path.receiver) == (sensor, sensor));
     let blind =
         |(&phase, &(fired, own)): (&u8, &(u32, u32))| (own == 0 && fired >= FEW_IN_PHASE).then_some((phase, fired));
@@ -76,7 +74,7 @@ fn of_sensor(sensor: u8, log: &FiringLog, paths: &[FoundPath], named: &[Option<N
         has_own_path,
         is_silent: is_silent(Share { count: echoes, of: firings }),
         // Where nothing is known of its own echo, nothing is known of its phases.
-        blind_phases: if has_own_path && !moves { phases.iter().filter_map(blind).collect() } else { Vec::new() },
+        blind_phases: if has_own_path { phases.iter().filter_map(blind).collect() } else { Vec::new() },
     }
 }
 

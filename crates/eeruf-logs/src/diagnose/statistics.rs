@@ -1,7 +1,7 @@
 //! Probabilities of accidents.
 
 /// The natural logarithm of the factorial of `n`.
-pub(super) fn ln_factorial(n: f64) -> f64 {
+fn ln_factorial(n: f64) -> f64 {
     // Stirling's series, good to 1e-10 from 10 on; below, the product.
     if n < 10.0 {
         return (2..=n as u32).map(|k| f64::from(k).ln()).sum();

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
+use super::Settings;
 use super::share::Share;
 use super::statistics::groups;
-use super::{FoundPath, Settings};
 use crate::firings::FiringLog;
 
 /// One reading of the receiver.
@@ -63,21 +63,6 @@ impl Timeline {
     /// The readings of a sensor.
     pub(super) fn heard_by(&self, receiver: u8) -> &[Heard] {
         &self.heard[usize::from(receiver)]
-    }
-
-    /// Returns the time at which the reading of a firing, given by its place in the log, reached its line.
-    fn edge_us(&self, line: u8, place: u32) -> i64 {
-        let heard = self.heard_by(line);
-        let of = heard.binary_search_by_key(&(place as usize), |of| of.firing).ok().map(|of| heard[of]);
-        of.map_or(0, |of| of.fired_us + of.echo_us.unwrap_or(0))
-    }
-
-    /// Returns the first and last time of readings along a path, if it moves.
-    pub(super) fn lasts(&self, path: &FoundPath) -> core::ops::RangeInclusive<i64> {
-        match path.rate_us_s {
-            Some(_) => self.edge_us(path.receiver, path.periods.0)..=self.edge_us(path.receiver, path.periods.1),
-            None => i64::MIN..=i64::MAX,
-        }
     }
 
     /// Returns true if readings of the first third of the log do not recur in the last third: among pairs of a sensor's

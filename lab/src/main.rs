@@ -17,9 +17,7 @@ mod narrow_panels;
 mod rust_side;
 mod shortest_periods;
 mod time_paths;
-mod time_scenes;
 mod tune;
-mod typical_alcove;
 mod uneven_rings;
 
 use std::error::Error;
@@ -32,7 +30,7 @@ type Answer = Result<(), Box<dyn Error>>;
 /// A command: its name, arguments and output.
 type Command = (&'static str, &'static str, &'static str, fn(&[String]) -> Answer);
 
-const COMMANDS: [Command; 17] = [
+const COMMANDS: [Command; 15] = [
     ("constant-depth", "", "angles at which a wall is heard, by distance and gain", constant_depth::main),
     (
         "diagnose-places",
@@ -44,7 +42,7 @@ const COMMANDS: [Command; 17] = [
     ("echo-times", "SCENE.toml [SENSORS]", "ways of sound in a scene, for simulated boards", echo_times::main),
     (
         "flow-tables",
-        "courses | robots | paths | rooms | leads [--ring FILE] [--first N] [--count N] [--tune] [--csv FILE]",
+        "courses | robots | rooms [--ring FILE] [--first N] [--count N] [--csv FILE]",
         "flow beside one by one, with and without a median",
         flow_tables::main,
     ),
@@ -66,9 +64,7 @@ const COMMANDS: [Command; 17] = [
         shortest_periods::main,
     ),
     ("time-paths", "[SCENE]", "time of the path finder", time_paths::main),
-    ("time-scenes", "[SCENE [RUNS]]", "time of expensive scenes", time_scenes::main),
     ("tune", "[--check]", "settings of the experiments, into the sources (an hour)", tune::main),
-    ("typical-alcove", "[SCENE.toml]", "the typical alcove of Set I", typical_alcove::main),
     ("uneven-rings", "[RINGS [SECONDS [FIRST]]]", "random rings for a race with peers", uneven_rings::main),
 ];
 

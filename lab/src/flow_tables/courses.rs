@@ -1,36 +1,27 @@
 //! Set II: courses among poles, alone, with another robot behind, and with one ahead.
 
-use eeruf_core::{Micros, SpeedOfSound, flow::Votes};
+use eeruf_core::SpeedOfSound;
+use eeruf_core::flow::{BeliefSettings, Votes};
 use eeruf_design::needs_to_see_m;
 use eeruf_sim::experiments::set_two::{Pilots, SECOND_AHEAD, SECOND_BEHIND, SetTwoOptions, set_two};
-use eeruf_sim::{Entry, LabMate, Method};
+use eeruf_sim::{Entry, FlowOptions, LabMate, Method};
 
-use super::{Asked, Cell, Table, flow, usual};
-
-/// Candidates for the range that enters the map and for the votes.
-fn candidates() -> Vec<Entry> {
-    let mut entries = vec![Entry::from(Method::Flow)];
-    for ms in [12, 14, 16, 18, 24] {
-        let reach = Some(Micros::from_millis(ms));
-        entries.push(flow(&format!("two in a row, {ms} ms"), Votes::TwoInARow, None, reach));
-        entries.push(flow(&format!("by motion, {ms} ms"), Votes::ByMotion, None, reach));
-        let least = Some(Micros::from_millis(2));
-        entries.push(flow(&format!("every echo, LEAST 2, {ms} ms"), Votes::EveryEcho, least, reach));
-    }
-    entries
-}
+use super::{Asked, Cell, Table, usual};
 
 /// Returns flow as `eeruf design` sets it for a ring at this speed.
 fn designed(speed_m_s: f64) -> Entry {
     let reach = needs_to_see_m(speed_m_s).map(|m| SpeedOfSound::default().echo_time((1e3 * m).round() as u32));
-    flow("flow as designed", Votes::TwoInARow, None, reach)
+    let mut options = FlowOptions::default();
+    let belief = BeliefSettings { votes: Votes::TwoInARow, ..BeliefSettings::DEFAULT };
+    (options.belief, options.window) = (Some(belief), reach);
+    Entry::new("flow as designed", Method::Flow).with_flow(options)
 }
 
 pub(super) fn table(asked: &Asked) -> Result<Table, Box<dyn std::error::Error>> {
     let mut table = Table::new("courses", 2, &["finished %", "m/s"]);
     for speed_max_m_s in [1.0, 2.0] {
         for (place, second_robot) in [("alone", None), ("behind", Some(SECOND_BEHIND)), ("ahead", Some(SECOND_AHEAD))] {
-            let mut methods = if asked.tune { candidates() } else { usual() };
+            let mut methods = usual();
             methods.extend([designed(speed_max_m_s), Entry::new("eeruf", Method::Eeruf)]);
             let options = SetTwoOptions {
                 seeds: asked.count,

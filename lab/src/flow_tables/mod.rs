@@ -1,24 +1,20 @@
 //! Tables of flow beside one by one, with and without a median of three: figures with 95 % intervals, and rows as CSV.
 //!
-//! `cargo lab flow-tables courses|robots|paths|rooms|leads [--ring RING.toml] [--first N] [--count N] [--tune]
-//! [--csv FILE]`. Settings are chosen (`--tune`) on scenes numbered below 2,000; figures are reported from number
-//! 20,000 on. Each table appends its rows to the file.
+//! `cargo lab flow-tables courses|robots|rooms [--ring RING.toml] [--first N] [--count N] [--csv FILE]`. Settings were
+//! chosen on scenes numbered below 2,000; figures are reported from number 20,000 on. Each table appends its rows to the
+//! file.
 
 mod courses;
-mod paths;
 mod robots;
 mod rooms;
 
 use std::fs::File;
 use std::io::Write;
 
-use eeruf_core::{
-    Micros,
-    flow::{BeliefSettings, Votes},
-};
+use eeruf_core::Micros;
 use eeruf_design::RingSpec;
 use eeruf_sim::experiments::{FIRST, Spread};
-use eeruf_sim::{Entry, FlowOptions, Method, Robot};
+use eeruf_sim::{Entry, Method, Robot};
 
 /// A figure with its 95 % interval.
 #[derive(Clone, Copy)]
@@ -95,14 +91,9 @@ pub(crate) struct Asked {
     ring: String,
     first: u64,
     count: u64,
-    tune: bool,
 }
 
 impl Asked {
-    fn numbers(&self) -> Vec<u64> {
-        (self.first..self.first + self.count).collect()
-    }
-
     /// Returns the robot of the ring's file.
     fn robot(&self) -> Result<Robot, Box<dyn std::error::Error>> {
         let spec = RingSpec::from_text(&std::fs::read_to_string(&self.ring)?).map_err(|error| error.to_string())?;
@@ -110,14 +101,6 @@ impl Asked {
         let period = robot.module_rest().max(robot.audible).max(robot.window).saturating_add(Micros::new(1));
         Ok(Robot { period, odometry: true, ..robot })
     }
-}
-
-/// Returns flow with these votes; its quiet, given as a share of R, stays constant.
-fn flow(name: &str, votes: Votes, least: Option<Micros>, window: Option<Micros>) -> Entry {
-    let mut options = FlowOptions::default();
-    (options.belief, options.least, options.window) =
-        (Some(BeliefSettings { votes, ..BeliefSettings::DEFAULT }), least, window);
-    Entry::new(name, Method::Flow).with_flow(options)
 }
 
 /// Returns one by one, one by one with a median of three, and flow as recommended.
@@ -132,7 +115,7 @@ fn usual() -> Vec<Entry> {
 pub(crate) fn main(arguments: &[String]) -> crate::Answer {
     let mut words = arguments.iter();
     let part = words.next().ok_or("no table; expected one of them")?;
-    let mut asked = Asked { ring: "rings/hc-sr04-8.toml".into(), first: FIRST, count: 200, tune: false };
+    let mut asked = Asked { ring: "rings/hc-sr04-8.toml".into(), first: FIRST, count: 200 };
     let mut csv = None;
     while let Some(word) = words.next() {
         let mut value = || words.next().ok_or_else(|| format!("{word}: no value; expected one"));
@@ -141,7 +124,6 @@ pub(crate) fn main(arguments: &[String]) -> crate::Answer {
             "--first" => asked.first = value()?.parse()?,
             "--count" => asked.count = value()?.parse()?,
             "--csv" => csv = Some(value()?.clone()),
-            "--tune" => asked.tune = true,
             _ => return Err(format!("{word}: no option").into()),
         }
     }
@@ -150,8 +132,6 @@ pub(crate) fn main(arguments: &[String]) -> crate::Answer {
     let table = match part.as_str() {
         "courses" => courses::table(&asked)?,
         "robots" => robots::table(&asked)?,
-        "paths" => paths::table(&asked)?,
-        "leads" => paths::leads(&asked)?,
         "rooms" => rooms::table(&asked)?,
         _ => return Err(format!("{part}: no table").into()),
     };

@@ -1,16 +1,11 @@
 //! Rooms: a robot that stands, drives, and turns, alone and beside another one of its make.
 
-use eeruf_core::{
-    Micros,
-    flow::{BeliefSettings, Votes},
-};
-use eeruf_design::turns_of;
 use eeruf_sim::experiments::Difference;
 use eeruf_sim::experiments::measure::{Condition as Moves, Moving};
 use eeruf_sim::experiments::rooms::{RoomKind, RoomPlan};
-use eeruf_sim::{Entry, FlowOptions, Method, Motion, Noise, Options, Physics, Robot, Room, Stop, Vector, World, sweep};
+use eeruf_sim::{Entry, Motion, Noise, Options, Physics, Robot, Room, Stop, Vector, World, sweep};
 
-use super::{Asked, Cell, Table, flow, usual};
+use super::{Asked, Cell, Table, usual};
 
 type Error = Box<dyn std::error::Error + Send + Sync>;
 
@@ -60,27 +55,9 @@ fn run(of: &Condition, robot: &Robot, kind: RoomKind, number: u64, entry: &Entry
     Ok([100.0 * found.belief.right, found.right_echoes_per_s, 100.0 * found.belief.phantom])
 }
 
-/// Ways of firing with different votes and least quiet, to show the cost of each.
-fn trade(robot: &Robot) -> Vec<Entry> {
-    let part = |of: f64| Some(Micros::new((f64::from(turns_of(robot, 1).most.as_micros()) / of) as u32));
-    let mut entries = usual();
-    // A way that believes every echo gets twice the least quiet.
-    for (name, twice) in [("R / 5.5", 5.5), ("R / 2.8", 2.8), ("R / 1.7", 1.7)] {
-        entries.push(flow(&format!("1 of 1, {name}"), Votes::EveryEcho, part(2.0 * twice), None));
-        entries.push(flow(&format!("two in a row, {name}"), Votes::TwoInARow, part(twice), None));
-    }
-    let mut no_dice = FlowOptions::default();
-    no_dice.dice = Some(Micros::ZERO);
-    let mut no_hold = FlowOptions::default();
-    no_hold.belief = Some(BeliefSettings { hold: 1, ..BeliefSettings::DEFAULT });
-    let without = [("flow without dice", no_dice), ("flow that holds no belief", no_hold)];
-    entries.extend(without.map(|(name, options)| Entry::new(name, Method::Flow).with_flow(options)));
-    entries
-}
-
 pub(super) fn table(asked: &Asked) -> Result<Table, Box<dyn std::error::Error>> {
     let robot = asked.robot()?;
-    let entries = if asked.tune { trade(&robot) } else { usual() };
+    let entries = usual();
     let head = &["right %", "against one by one", "right echoes/s", "phantom %"];
     let mut table = Table::new("rooms", 1, head);
     for others in [false, true] {

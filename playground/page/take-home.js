@@ -26,7 +26,10 @@ const USES = new Map([
   ["arduino", "A tab for the library Eeruf: give RING to an EerufSonar. For a whole sketch take the form Ring."],
   ["python", "For the package eeruf: it verifies the schedule again."],
   ["schedule", "For the program: eeruf verify schedule.toml --t-delta-us N, and for a robot in a scene file."],
-  ["ring", "For the program: eeruf design ring.toml --program arduino writes the sketch that fires it best."],
+  [
+    "ring",
+    'Add your module, as module = "hc-sr04"; then eeruf design ring.toml --program arduino writes the sketch that fires it best.',
+  ],
   ["scene", "For the program: eeruf study scene.toml compares all methods in this room."],
 ]);
 

@@ -13,7 +13,7 @@ use super::rooms::{self, RoomArgs};
 use crate::console::tell;
 use crate::files::error::InputError;
 use crate::files::write::{make_folder, write};
-use crate::program::{Board, Language, Wanted, program};
+use crate::program::{Board, Language, Wanted, fitting, program};
 use crate::report::watch::Watch;
 
 /// Options of a program.
@@ -61,7 +61,9 @@ impl ProgramArgs {
         in_rooms: &RoomArgs,
         watch: &Watch,
     ) -> Result<Result<(Way, Robot), String>, InputError> {
-        if let Some(Named(way)) = self.way {
+        // The node fires by flow alone.
+        let of_node = (self.program == Some(Language::Ros2)).then_some(Named(Way::Flow));
+        if let Some(Named(way)) = self.way.or(of_node) {
             return Ok(design.spec.room_robot().map(|of| (way, of.robot)));
         }
         let none = || "no way can fire this ring; `eeruf design` says why".to_owned();
@@ -81,6 +83,8 @@ pub(crate) fn run(
     watch: &Watch,
 ) -> Result<Answer, InputError> {
     let bad = |why: String| InputError::new(file, why);
+    // Before rooms are judged, which takes a while.
+    fitting(&design.spec, language, args.board, args.mavlink).map_err(bad)?;
     let (way, robot) = args.fires(design, in_rooms, watch)?.map_err(bad)?;
     let folder = args.out.clone().unwrap_or_else(|| PathBuf::from(file.file_stem().unwrap_or_default()));
     let name = plain(&folder);

@@ -75,24 +75,40 @@ const ARDUINO_LIBRARY: [(&str, &str); 5] = [
     ("EerufSeed.h", include_str!("../../c/arduino/src/EerufSeed.h")),
 ];
 
-/// Writes a program.
+/// The times of a ring's modules, and the board with its wires, if the program is for one.
+type Fitting = (PulseTimes, Option<(Board, Wiring)>);
+
+/// Checks what a program needs in any way of firing.
 ///
 /// # Errors
 /// A wish that the language, the board or the modules cannot fulfil, in words.
-pub(crate) fn program(wanted: &Wanted<'_>, language: Language, board: Option<Board>) -> Result<Program, String> {
-    let spec = &wanted.design.spec;
+pub(crate) fn fitting(
+    spec: &RingSpec,
+    language: Language,
+    board: Option<Board>,
+    mavlink: bool,
+) -> Result<Fitting, String> {
     let times = pulse_times(spec)?;
-    let board = chosen(language, board)?;
-    let wiring =
-        board.map(|board| Ok::<_, String>((board, board.wiring(spec.sensors, wanted.mavlink)?))).transpose()?;
-    if wanted.way == Way::TwoPhases && matches!(language, Language::Micropython | Language::Ros2) {
-        return Err("--way two-phases: expected --program arduino, c or rust, which fire by tables".to_owned());
-    }
-    if wanted.mavlink && !matches!(language, Language::Arduino | Language::C) {
+    let wired = |board: Board| Ok::<_, String>((board, board.wiring(spec.sensors, mavlink)?));
+    let wiring = chosen(language, board)?.map(wired).transpose()?;
+    if mavlink && !matches!(language, Language::Arduino | Language::C) {
         return Err("--mavlink: expected --program arduino or c; the ROS 2 node has a parameter `mavlink`".to_owned());
     }
-    if wanted.mavlink && spec.places.poses.is_empty() {
+    if mavlink && spec.places.poses.is_empty() {
         return Err("--mavlink: no places of sensors; expected poses, or spacing_deg and radius_m".to_owned());
+    }
+    Ok((times, wiring))
+}
+
+/// Writes a program.
+///
+/// # Errors
+/// As for [`fitting`], and a way of firing that the language has not.
+pub(crate) fn program(wanted: &Wanted<'_>, language: Language, board: Option<Board>) -> Result<Program, String> {
+    let spec = &wanted.design.spec;
+    let (times, wiring) = fitting(spec, language, board, wanted.mavlink)?;
+    if wanted.way == Way::TwoPhases && matches!(language, Language::Micropython | Language::Ros2) {
+        return Err("--way two-phases: expected --program arduino, c or rust, which fire by tables".to_owned());
     }
     let flow = if wanted.way == Way::TwoPhases { None } else { Some(spec.fired(wanted.way, wanted.robot, 1)?) };
     let about = wanted.about(flow.as_ref(), wiring.as_ref());

@@ -20,7 +20,9 @@ fn readme_goes_from_four_lines_to_a_program_in_each_language() {
         ("ros2", "ros2/eeruf.yaml"),
     ] {
         let out = folder.path().join(main.split('/').next().unwrap());
-        let words = ["design", file, "--way", "flow", "--program", language, "--out", out.to_str().unwrap()];
+        let mut words = vec!["design", file, "--program", language, "--out", out.to_str().unwrap()];
+        // The node fires by flow unasked.
+        words.extend(if language == "ros2" { &[][..] } else { &["--way", "flow"] });
         let said = eeruf(&words);
         assert_eq!((said.code, said.out.contains("of a ring that fires by flow; ")), (Some(0), true), "{}", said.err);
         let text = std::fs::read_to_string(folder.path().join(main)).unwrap();
@@ -48,7 +50,7 @@ fn parameters_of_the_node_are_its_own() {
 #[test]
 fn programs_that_cannot_be_are_refused_by_what_is_expected() {
     for (ring, options, expected) in [
-        ("rings/paper-12.toml", "arduino --way flow", "the ring file names no module; expected `module`"),
+        ("rings/paper-12.toml", "arduino", "the ring file names no module; expected `module`"),
         ("rings/hc-sr04-8.toml", "rust --way flow --board uno", "--board uno: expected none"),
         (
             "rings/hc-sr04-8.toml",

@@ -7,10 +7,8 @@ mod api;
 mod arduino;
 mod blocks;
 mod c;
-mod certificates;
 mod changed;
 mod deb;
-mod dist;
 mod examples;
 mod firmware;
 mod house;
@@ -109,14 +107,10 @@ enum Verb {
         #[arg(value_name = "DOCUMENT", required_unless_present = "check")]
         document: Option<String>,
     },
-    /// Certify the rings of the tables, and have the checker judge them and those of 20,000 tiny problems (minutes)
-    Certificates(certificates::Plan),
     /// Pack the crates that are published, and build and test each from its tarball, in a folder of its own (minutes)
     Package,
     /// List the public items of eeruf-core and eeruf-hc-sr04 in target/api, and count names and types
     Api,
-    /// Build wheels for Linux (glibc and musl, AMD64 and aarch64) and static programs into target/dist (many minutes)
-    Dist(dist::Plan),
     /// Write what is in each published crate, as a bill of materials, into target/materials
     Materials,
     /// Write the notices of what others wrote in program and wheel into LICENSE-THIRD-PARTY.txt, which both then carry
@@ -156,10 +150,8 @@ fn main() -> ExitCode {
             Some(document) => printed::reprint(&document),
             None => printed::check(&printed::documents()?, printed::Which::All),
         }),
-        Verb::Certificates(plan) => certificates::run_all(&plan, &mut steps),
         Verb::Package => package::package(&mut steps),
         Verb::Api => one(&mut steps, "public items", api::api),
-        Verb::Dist(plan) => dist::dist(&plan, &mut steps),
         Verb::Materials => one(&mut steps, "bills of materials", release::materials),
         Verb::Notices => one(&mut steps, "notices", release::notices),
         Verb::Site => site::site(&mut steps),

@@ -188,11 +188,6 @@ pub(crate) fn edited(text: &str, parts: &[(&str, &str)]) -> Result<String> {
     })
 }
 
-/// The name of a file without its ending.
-pub(crate) fn stem(path: &Path) -> String {
-    path.file_stem().unwrap_or_default().to_string_lossy().into_owned()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

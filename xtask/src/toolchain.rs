@@ -12,7 +12,7 @@ use anyhow::{Context as _, Result, bail};
 use crate::steps::{output, run, skip};
 
 /// Debian's compiler, which builds the standard library from its sources.
-pub(crate) const DEBIAN_CARGO: &str = "/usr/bin/cargo";
+const DEBIAN_CARGO: &str = "/usr/bin/cargo";
 pub(crate) const DEBIAN_RUSTC: &str = "/usr/bin/rustc";
 
 /// The version of a compiler, as "1.95".
@@ -50,13 +50,12 @@ pub(crate) fn cargo_of_version(version: &str) -> Result<Command> {
     skip(format!("no rustc {version}; try: rustup toolchain install {version}"))
 }
 
-/// Returns true if the default compiler has this library, "core" or "std", for a target.
-pub(crate) fn has_library(library: &str, target: &str) -> bool {
+/// Returns true if the default compiler has the library `core` for a target.
+fn has_core(target: &str) -> bool {
     let folder = output(Command::new("rustc").args(["--print", "target-libdir", "--target", target]));
     let entries = folder.ok().and_then(|folder| Path::new(&folder).read_dir().ok());
-    let begins = format!("lib{library}-");
     entries.is_some_and(|mut entries| {
-        entries.any(|entry| entry.is_ok_and(|entry| entry.file_name().to_string_lossy().starts_with(&begins)))
+        entries.any(|entry| entry.is_ok_and(|entry| entry.file_name().to_string_lossy().starts_with("libcore-")))
     })
 }
 
@@ -65,7 +64,7 @@ pub(crate) fn has_library(library: &str, target: &str) -> bool {
 /// It is rustup's if the target is installed; else Debian's, which builds `core` from its sources, and for WebAssembly
 /// `std` too.
 pub(crate) fn cargo_for_target(target: &str) -> Result<Command> {
-    if has_library("core", target) {
+    if has_core(target) {
         let mut cargo = Command::new("cargo");
         // Images are looked for in `target_folder`.
         cargo.env_remove("CARGO_TARGET_DIR");

@@ -187,6 +187,16 @@ pub(crate) fn stem(name: &str) -> Vec<String> {
     words
 }
 
+/// The stem of a name for the least or the greatest of several readings, without that word, and whether it is the
+/// least; `None` for other names.
+pub(crate) fn extreme(name: &str) -> Option<(Vec<String>, bool)> {
+    let mut stem = stem(name);
+    let is_least = stem.iter().any(|word| is_in("min minimum", word));
+    let count = stem.len();
+    stem.retain(|word| !is_in(LIMITS, word));
+    (stem.len() < count).then_some((stem, is_least))
+}
+
 /// Returns true for the first letter of a place's name.
 pub(crate) fn is_letter_of_place(name: &str) -> bool {
     is_in("l r c m f b", &name.to_lowercase())

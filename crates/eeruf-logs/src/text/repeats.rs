@@ -60,12 +60,20 @@ impl Plan {
                 let others = found.iter().filter(|&&other| other != index).map(|&other| &self.columns[other].name);
                 others.filter(|other| is_one(other)).any(|other| names::stem(other) == stem)
             };
+            let is_extreme = names::extreme(name).is_some_and(|(stem, is_least)| {
+                found.iter().any(|&other| match names::extreme(&self.columns[other].name) {
+                    Some((of, is_better)) => of == stem && is_better && !is_least,
+                    None => names::stem(&self.columns[other].name) == stem,
+                })
+            });
             let is_pin = names::is_analogue_pin(name)
                 && found.iter().any(|&other| !names::is_analogue_pin(&self.columns[other].name));
             let why = if is_pin {
                 "an analogue converter's"
             } else if names::is_filtered(name) && beside(&|other| !names::is_filtered(other)) {
                 "what a filter made of another column"
+            } else if is_extreme {
+                "the least or the greatest of readings beside it"
             } else {
                 continue;
             };

@@ -257,6 +257,23 @@ fn damaged_line_among_messages_of_a_board_is_damage() {
 }
 
 #[test]
+fn extremes_of_readings_are_not_sensors_beside_them() {
+    for (header, kept, left) in [
+        ("front_min,front_mean,front_max,left_min,left_mean,left_max", ["front_mean", "left_mean"], 4),
+        ("front_cm,front_max_cm,front_std_cm,left_cm,left_max_cm,left_std_cm", ["front_cm", "left_cm"], 2),
+        ("max_front,min_front,upper_front,max_left,min_left,upper_left", ["min_front", "min_left"], 4),
+    ] {
+        let row = |n: u32| format!("{}.{n},{n}1.5,{n}3.7,2{n}.1,3{n}.5,4{n}.9\n", n + 40);
+        let text = format!("{header}\n{}", (2..9).map(row).collect::<String>());
+        let (found, _, report) = said(text.as_bytes(), &Options::default());
+        let names: Vec<_> = found.split("; ").filter_map(|sensor| Some(sensor.split_once(':')?.0)).collect();
+        assert_eq!(names, kept, "{text}");
+        let guess = report.guesses.iter().find(|guess| guess.what == "no sensors").unwrap();
+        assert_eq!(guess.value.matches("the least or the greatest").count(), left, "{}", guess.value);
+    }
+}
+
+#[test]
 fn repetition_is_said_and_overridden() {
     let text = "front_cm,front_in\n40,15.7\n51,20.1\n69,27.2\n";
     let (found, _, report) = said(text.as_bytes(), &Options::default());

@@ -596,7 +596,8 @@ EerufStatus eeruf_flow_init(EerufFlowRing *flow, size_t flow_size, EerufFlowSens
 /* Like eeruf_flow_init, for sensors that are all alike, without `config->own`; links less code. */
 EerufStatus eeruf_flow_init_alike(EerufFlowRing *flow, size_t flow_size, EerufFlowSensor *sensors, size_t sensors_size,
                                   const EerufFlowConfig *config, uint32_t now_us);
-EerufStatus eeruf_flow_poll(EerufFlowRing *flow, uint32_t now_us, EerufEvent *event); /* a period is a round */
+/* A period is a round. After EERUF_EVENT_FIRE trigger first: the next call decides which sensor follows. */
+EerufStatus eeruf_flow_poll(EerufFlowRing *flow, uint32_t now_us, EerufEvent *event);
 /* Reports how fast the robot moves and turns, both unsigned, once a control cycle: readings may change by as much.
    After half a second without a call the top speed is assumed. */
 EerufStatus eeruf_flow_moving(EerufFlowRing *flow, uint32_t speed_mm_s, uint32_t turn_mrad_s, uint32_t now_us);

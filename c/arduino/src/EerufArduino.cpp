@@ -8,7 +8,7 @@
 static const uint32_t LOOKS_US = 300, LONGEST_US = 4000;
 // Lines rise within this time after their trigger.
 static const uint32_t RISES_US = 1000;
-// Time from a poll to its trigger in a flow ring: up to 0.5 ms on an Uno.
+// Time from a poll to its trigger in a flow ring, which decides about the next firing only then.
 #ifdef __AVR__
 static const uint16_t DECIDES_US = 8000 / (F_CPU / 1000000);
 #else

@@ -91,7 +91,7 @@ protected:
     // Processes edges, and waits for a step due within `soon`; returns the clock before it. `looks` as EERUF_LOOKS.
     uint32_t collect(uint16_t soon, bool looks);
     // Delays the trigger that was polled at `now` so that all triggers follow their polls by the same time, however
-    // long the decision took: an uneven delay would look like a change of a foreign path.
+    // long the poll took: an uneven delay would look like a change of a foreign path.
     void holdBack(uint32_t now, bool looks);
     // Handles an event; true for a reading.
     bool take(const EerufEvent &event, uint32_t now, bool looks);

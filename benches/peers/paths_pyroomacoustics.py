@@ -74,11 +74,6 @@ def main():
             f"{scene:<10} {order:>5} {mine['paths']:>6} {seconds * 1e3:>9.3f} ms {core * 1e6:>7.1f} us {seconds / core:>8.0f}x"
             f" {target:>6}x {whole * 1e6:>7.1f} us {seconds / whole:>8.0f}x  {'same sets, worst %.1e m' % worst if agree else 'SETS DIFFER'}"
         )
-    big = {name: timing for name, timing in ours.items() if name.startswith(("star1000", "pillars1024"))}
-    for name, timing in big.items():
-        print(
-            f"{name}: core {timing['core_us']:.0f} us, whole {timing['whole_us']:.0f} us, mesh built in {timing['build_us'] / 1e3:.1f} ms"
-        )
 
 
 if __name__ == "__main__":

@@ -7,12 +7,10 @@ mod constant_depth;
 #[path = "../../crates/eeruf-sim/tests/common/corpus.rs"]
 mod corpus;
 mod diagnose_places;
-mod doctor_alcoves;
 mod echo_times;
 mod flow_tables;
 mod four_worlds;
 mod measure;
-mod modules;
 mod narrow_panels;
 mod rust_side;
 mod shortest_periods;
@@ -30,7 +28,7 @@ type Answer = Result<(), Box<dyn Error>>;
 /// A command: its name, arguments and output.
 type Command = (&'static str, &'static str, &'static str, fn(&[String]) -> Answer);
 
-const COMMANDS: [Command; 15] = [
+const COMMANDS: [Command; 13] = [
     ("constant-depth", "", "angles at which a wall is heard, by distance and gain", constant_depth::main),
     (
         "diagnose-places",
@@ -38,7 +36,6 @@ const COMMANDS: [Command; 15] = [
         "senders that diagnose names",
         diagnose_places::main,
     ),
-    ("doctor-alcoves", "[FIRST [ALCOVES [PERIODS [PHYSICS]]]]", "verdicts of eeruf logs", doctor_alcoves::main),
     ("echo-times", "SCENE.toml [SENSORS]", "ways of sound in a scene, for simulated boards", echo_times::main),
     (
         "flow-tables",
@@ -49,11 +46,10 @@ const COMMANDS: [Command; 15] = [
     ("four-worlds", "[interference]", "Set I, flat and in a room, with two gains", four_worlds::main),
     (
         "measure",
-        "[RING.toml ..] [--first N] [--places N] [--csv FILE] [--blocks N] [--planted BLOCKS]",
+        "[RING.toml ..] [--first N] [--places N] [--csv FILE] [--blocks N]",
         "ways of firing by what a robot needs",
         measure::main,
     ),
-    ("modules", "", "tables of docs/reference/modules.md", modules::main),
     ("narrow-panels", "", "panels narrower than a Fresnel zone", narrow_panels::main),
     ("periods", "", "table of shortest periods", shortest_periods::table),
     ("rust-side", "paths | times", "what Python is held against", rust_side::main),
@@ -63,7 +59,7 @@ const COMMANDS: [Command; 15] = [
         "shortest periods and their cost",
         shortest_periods::main,
     ),
-    ("time-paths", "[SCENE]", "time of the path finder", time_paths::main),
+    ("time-paths", "", "time of the path finder", time_paths::main),
     ("tune", "[--check]", "settings of the experiments, into the sources (an hour)", tune::main),
     ("uneven-rings", "[RINGS [SECONDS [FIRST]]]", "random rings for a race with peers", uneven_rings::main),
 ];

@@ -1,19 +1,18 @@
 //! Ways of firing rings measured by what a robot needs: the table of `eeruf_sim::experiments::measure`, with intervals,
 //! and its rows as CSV.
 //!
-//! `cargo lab measure [RING.toml ..] [--first N] [--places N] [--csv FILE] [--blocks N] [--planted BLOCKS]`:
+//! `cargo lab measure [RING.toml ..] [--first N] [--places N] [--csv FILE] [--blocks N]`:
 //! rooms from number 20,000 on, and 6 of each kind, on which figures are reported; settings are chosen on as many from
 //! number 1,000 on. Without a file it measures rings of 2, 4, 8, 12 and 24 HC-SR04. With `--blocks`, instead what is
-//! recommended in this many blocks of rooms; with `--planted`, how often a sound way is told from itself with something
-//! planted in it.
+//! recommended in this many blocks of rooms.
 
 use std::fs::File;
 use std::io::{BufWriter, Write};
 
 use eeruf_design::{CHOICE, RingDesign, RingSpec, RoomsAsked};
 use eeruf_sim::experiments::measure::{
-    Cell, Condition, Control, Costs, Estimate, Family, MeasureAsked, Measured, Moving, ONE_A_MINUTE, Operating, Point,
-    RoomWay, Speeds, Under, measure,
+    Cell, Condition, Costs, Estimate, Family, MeasureAsked, Measured, Moving, ONE_A_MINUTE, Operating, Point, RoomWay,
+    Speeds, Under, measure,
 };
 use eeruf_sim::experiments::{ExperimentError, FIRST};
 
@@ -33,12 +32,11 @@ struct Arguments {
     places: u64,
     csv: Option<String>,
     blocks: u64,
-    planted: u64,
 }
 
 impl Arguments {
     fn of(arguments: &[String]) -> Result<Self, Box<dyn std::error::Error>> {
-        let mut asked = Self { rings: vec![], first: FIRST, places: 6, csv: None, blocks: 0, planted: 0 };
+        let mut asked = Self { rings: vec![], first: FIRST, places: 6, csv: None, blocks: 0 };
         let mut words = arguments.iter();
         while let Some(word) = words.next() {
             let mut value = || words.next().ok_or_else(|| format!("{word}: no value; expected one"));
@@ -46,7 +44,6 @@ impl Arguments {
                 "--first" => asked.first = value()?.parse()?,
                 "--places" => asked.places = value()?.parse()?,
                 "--blocks" => asked.blocks = value()?.parse()?,
-                "--planted" => asked.planted = value()?.parse()?,
                 "--csv" => asked.csv = Some(value()?.clone()),
                 _ => asked.rings.push(word.clone()),
             }
@@ -137,28 +134,6 @@ fn curve(measured: &Measured, chosen: &Measured) {
     }
 }
 
-/// Prints how often a sound way is recommended over itself with something planted in it, which counts as the simpler.
-fn planted(ways: &[RoomWay], asked: &MeasureAsked, blocks: u64) -> crate::Answer {
-    let Some(sound) = ways.iter().find(|way| way.name == "one_by_one_33ms") else { return Ok(()) };
-    let controls = Control::PLANTED.map(Some).into_iter().chain([None]);
-    let ways: Vec<_> = controls.map(|control| (sound.clone(), control)).collect();
-    // Beside another robot, one by one may have no operating point.
-    let alone: Vec<_> = asked.conditions.iter().copied().filter(|condition| !condition.others).collect();
-    let mut told = [0; Control::PLANTED.len()];
-    for block in 0..blocks {
-        let of = |first| measure(&ways, &MeasureAsked { first, conditions: alone.clone(), ..asked.clone() }, &|_| true);
-        let (chosen, measured) = (of(block * asked.places)?, of(asked.first + block * asked.places)?);
-        for (planted, told) in told.iter_mut().enumerate() {
-            let groups = [planted, Control::PLANTED.len()].map(|of| chosen.points(|way| way == of));
-            *told += u64::from(measured.costs(&chosen, &groups[0], &groups).recommended == Some(1));
-        }
-    }
-    for (control, told) in Control::PLANTED.iter().zip(told) {
-        println!("{control:?}: the sound way is recommended in {told} of {blocks} blocks of rooms");
-    }
-    Ok(())
-}
-
 fn trials(under: &Under) -> String {
     let things = under.places.iter().filter(|place| place.thing.is_some()).count();
     let unread = 100.0 * under.unread();
@@ -193,7 +168,7 @@ fn recommended(file: &str, spec: &RingSpec, design: Option<&RingDesign>, asked: 
 
 pub(crate) fn main(arguments: &[String]) -> crate::Answer {
     let given = Arguments::of(arguments)?;
-    let Arguments { rings, first, places, csv, blocks, planted: planted_blocks } = given.clone();
+    let Arguments { rings, first, places, csv, blocks } = given.clone();
     let mut out = csv.map(File::create).transpose()?.map(BufWriter::new);
     if let Some(out) = &mut out {
         writeln!(out, "ring,{}", Measured::CSV_HEAD)?;
@@ -218,10 +193,6 @@ pub(crate) fn main(arguments: &[String]) -> crate::Answer {
             continue;
         }
         let asked = MeasureAsked { conditions: Condition::ALL.into(), own: vec![], first, places, speeds };
-        if planted_blocks > 0 {
-            planted(&ways, &asked, planted_blocks)?;
-            continue;
-        }
         let (chosen, measured) = (run(&ways, &asked, CHOICE)?, run(&ways, &asked, first)?);
         println!(
             "{file}: {places} rooms of each kind from number {first} on, settings from as many from number {CHOICE} on."

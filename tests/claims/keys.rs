@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use eeruf_design::RingSpec;
-use eeruf_sim::modules::{KEYS, PRESETS, Source};
+use eeruf_sim::modules::{Interface, KEYS, NoEcho, PRESETS};
 use eeruf_sim::{Physics, Pose, Robot, Room, Transducer, WorldParts};
 
 /// Keys of older files, which are still read or refused by name.
@@ -34,27 +34,41 @@ fn expected(message: &str) -> BTreeSet<String> {
     keys.into_iter().filter(|key| !OLDER.contains(&&**key)).collect()
 }
 
+// Each figure has a source, a document or a choice, and each module figures of a document.
 #[test]
 fn figures_of_modules_are_those_in_the_document() {
+    const DOCUMENT: &str = "docs/reference/modules.md";
     let stubs = std::fs::read_to_string("python/eeruf/_eeruf.pyi").unwrap();
-    for preset in &PRESETS {
-        assert!(stubs.contains(&format!("        {:?},\n", preset.module.name)), "_eeruf.pyi: {}", preset.title);
-        let heading = format!("\n### {}: `{}`\n", preset.title, preset.module.name);
-        let rows = rows("docs/reference/modules.md", &heading);
-        let rows: Vec<_> = rows.iter().take(KEYS.len()).collect();
+    let text = std::fs::read_to_string(DOCUMENT).unwrap();
+    let all = rows(DOCUMENT, "# Modules\n");
+    for module in PRESETS {
+        let name = module.name;
+        assert!(stubs.contains(&format!("        {name:?},\n")), "_eeruf.pyi: {name}");
+        let heading = text.lines().find(|line| line.starts_with("### ") && line.ends_with(&format!(": `{name}`")));
+        let heading = heading.unwrap_or_else(|| panic!("{name}: no heading"));
+        let rows: Vec<_> = rows(DOCUMENT, heading).into_iter().take(KEYS.len()).collect();
+        assert_eq!(rows.len(), KEYS.len(), "{name}");
         for (row, key) in rows.iter().zip(&KEYS) {
-            let value = key.of(preset.module).to_string();
-            let shown = row[1].trim_matches('`');
-            assert_eq!((row[0].trim_matches('`'), shown), (key.name, &*value), "{}", preset.title);
-            let source = match preset.source(key.name) {
-                Some(Source::Document(document)) => document.to_owned(),
-                Some(Source::Choice(why)) => format!("*choice*: {why}"),
-                None => panic!("{}: {}: no source", preset.title, key.name),
-            };
-            assert_eq!(row[2], source, "{}", preset.title);
+            let shown = (row[0].trim_matches('`'), row[1].trim_matches('`'));
+            assert_eq!(shown, (key.name, &*key.of(module).to_string()), "{name}");
+            assert!(!row[2].trim_start_matches("*choice*:").trim().is_empty(), "{name}: {}: no source", key.name);
         }
-        assert_eq!(rows.len(), KEYS.len());
+        assert!(rows.iter().any(|row| !row[2].starts_with("*choice*: ")), "{name}");
+        // The first table, by interface.
+        let title = heading.trim_start_matches("### ").split(": `").next().unwrap();
+        let without_echo = match module.no_echo {
+            NoEcho::Holds { us } => format!("holds its line for {} ms", f64::from(us) / 1e3),
+            NoEcho::Silent => "no edge".to_owned(),
+            NoEcho::Reports => "reports none".to_owned(),
+        };
+        let interface = Interface::NAMES.iter().find(|(_, known)| *known == module.interface).unwrap().0;
+        let [sees_m, rest_ms] =
+            [module.sees_to_mm, module.rest_us].map(|thousand| format!("{}", f64::from(thousand) / 1e3));
+        let row = [format!("`{interface}`"), format!("`{name}`, {title}"), sees_m, rest_ms, without_echo];
+        assert!(all.iter().any(|known| known[..] == row), "{row:?}");
     }
+    let meanings: BTreeSet<_> = all.iter().filter(|row| row.len() == 2).flat_map(|row| quoted(&row[0])).collect();
+    assert!(KEYS.iter().all(|key| meanings.contains(key.name)), "{meanings:?}");
 }
 
 #[test]

@@ -26,10 +26,9 @@ pub(crate) fn logs(steps: &mut Steps) {
     for (places, least) in SENDERS {
         steps.step(&format!("senders in {places}"), || senders(places, least));
     }
-    for physics in ["plain", "default"] {
-        let verdicts = || run_line(&format!("cargo lab doctor-alcoves 20000 100 1000 {physics}"));
-        steps.step(&format!("crosstalk in 800 logs, physics {physics}"), verdicts);
-    }
+    steps.step("verdicts on 200 logs of each kind", || {
+        run_line("cargo run --release --locked -p eeruf-logs --example verdicts 20000 200")
+    });
     steps.step("10^8 readings of a server", || {
         let python = environment(&Path::new(HOME).join("wheel"), &[".", "aiohttp", "fsspec"])?;
         run(Command::new(python).args(["tests/python/far_log.py", "100000000"]))

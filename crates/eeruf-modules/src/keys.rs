@@ -9,8 +9,6 @@ use crate::module::{Beam, Gain, Interface, Module, NoEcho};
 pub struct Key {
     /// The name.
     pub name: &'static str,
-    /// The meaning, in a few words.
-    pub about: &'static str,
     kind: Kind,
 }
 
@@ -109,10 +107,9 @@ impl core::error::Error for ModuleError<'_> {}
 
 /// Describes a figure that is a number.
 macro_rules! number {
-    ($name:literal, $scale:literal, $most:literal, $field:ident, $about:literal) => {
+    ($name:literal, $scale:literal, $most:literal, $field:ident) => {
         Key {
             name: $name,
-            about: $about,
             kind: Kind::Number {
                 scale: $scale,
                 most: $most,
@@ -125,10 +122,9 @@ macro_rules! number {
 
 /// Describes a figure that is a word.
 macro_rules! word {
-    ($name:literal, $field:ident: $kind:ident, $names:expr, $about:literal) => {
+    ($name:literal, $field:ident: $kind:ident, $names:expr) => {
         Key {
             name: $name,
-            about: $about,
             kind: Kind::Word {
                 names: &$names,
                 get: |module| module.$field.name(),
@@ -143,23 +139,21 @@ macro_rules! word {
 
 /// The figures of a module, in the order in which tables list them.
 pub const KEYS: [Key; 15] = [
-    number!("sees_to_m", 1e3, 100.0, sees_to_mm, "farthest range that it reports"),
-    number!("hears_to_m", 1e3, 100.0, hears_to_mm, "farthest wall off which its sound is still heard now and then"),
-    number!("blanking_us", 1.0, 1e6, blanking_us, "deaf time after it has fired"),
-    number!("frequency_hz", 1.0, 1e6, frequency_hz, "frequency"),
-    number!("bandwidth_hz", 1.0, 1e6, bandwidth_hz, "width of its band; modules hear each other if bands overlap"),
-    number!("burst_cycles", 1.0, 1e3, burst_cycles, "length of the burst in cycles"),
+    number!("sees_to_m", 1e3, 100.0, sees_to_mm),
+    number!("hears_to_m", 1e3, 100.0, hears_to_mm),
+    number!("blanking_us", 1.0, 1e6, blanking_us),
+    number!("frequency_hz", 1.0, 1e6, frequency_hz),
+    number!("bandwidth_hz", 1.0, 1e6, bandwidth_hz),
+    number!("burst_cycles", 1.0, 1e3, burst_cycles),
     word!(
         "gain",
         gain: Gain,
-        ["constant", "square_root", "linear", "stepped", "polaroid_6500"],
-        "growth of its gain while it listens"
+        ["constant", "square_root", "linear", "stepped", "polaroid_6500"]
     ),
-    number!("radius_mm", 1e3, 100.0, radius_um, "radius of the piston that has its beam"),
-    word!("beam", beam: Beam, ["cut_at_90", "continuous"], "pattern near 90 degrees and beyond"),
+    number!("radius_mm", 1e3, 100.0, radius_um),
+    word!("beam", beam: Beam, ["cut_at_90", "continuous"]),
     Key {
         name: "no_echo",
-        about: "what it does where nothing is in range",
         kind: Kind::Word {
             names: &NoEcho::NAMES,
             get: |module| module.no_echo.name(),
@@ -177,7 +171,6 @@ pub const KEYS: [Key; 15] = [
     },
     Key {
         name: "hold_us",
-        about: "how long a module that holds its line does so; 0 for others",
         kind: Kind::Number {
             scale: 1.0,
             most: 1e7,
@@ -189,15 +182,14 @@ pub const KEYS: [Key; 15] = [
             },
         },
     },
-    number!("rest_us", 1.0, 1e7, rest_us, "shortest time from one trigger to the next"),
-    number!("trigger_us", 1.0, 1e6, trigger_us, "length of the trigger pulse; 0 for a command, a level, or none"),
+    number!("rest_us", 1.0, 1e7, rest_us),
+    number!("trigger_us", 1.0, 1e6, trigger_us),
     word!(
         "interface",
         interface: Interface,
-        ["edge", "one_pin", "pulse_width", "uart", "i2c", "analog"],
-        "how it reports"
+        ["edge", "one_pin", "pulse_width", "uart", "i2c", "analog"]
     ),
-    number!("report_us", 1.0, 1e7, report_us, "time from trigger to report; 0 where the echo's edge reports it"),
+    number!("report_us", 1.0, 1e7, report_us),
 ];
 
 impl Key {

@@ -1,7 +1,7 @@
 //! Ultrasonic ranging modules: range, beam, echo line and rest between two triggers.
 //!
 //! One description serves ring files, scenes, drivers and the simulator: a [`Module`] of plain numbers. Ten are
-//! [presets](PRESETS), each figure with the document that gives it, or marked as a choice.
+//! [presets](PRESETS); docs/reference/modules.md names the document that gives each figure, or marks it as a choice.
 //!
 //! ```
 //! use eeruf_modules::{HC_SR04, Interface, find};
@@ -43,6 +43,6 @@ pub use module::{Beam, Gain, Interface, Module, NoEcho, PulseTimes};
 #[cfg(feature = "sound")]
 pub use piston::{Piston, wrap_angle};
 pub use presets::{
-    A02YYUW, HC_SR04, HC_SR04_CLONE, JSN_SR04T, MB1010, MB1242, PING, POLAROID_6500, PRESETS, Preset, SRF08, Source,
-    US_100, find, names,
+    A02YYUW, HC_SR04, HC_SR04_CLONE, JSN_SR04T, MB1010, MB1242, PING, POLAROID_6500, PRESETS, SRF08, US_100, find,
+    names,
 };

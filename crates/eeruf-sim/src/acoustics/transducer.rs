@@ -188,13 +188,13 @@ mod tests {
     #[test]
     fn modules_hear_to_five_sigma_of_fading_beyond_their_range() {
         let air = Air::default();
-        for preset in &eeruf_modules::PRESETS {
-            let transducer = Transducer::of(preset.module);
-            let length_m = 2.0 * f64::from(preset.module.hears_to_mm) / 1e3;
+        for preset in eeruf_modules::PRESETS {
+            let transducer = Transducer::of(preset);
+            let length_m = 2.0 * f64::from(preset.hears_to_mm) / 1e3;
             let loss_db = air.absorption_db_per_m(transducer.frequency_hz) * length_m;
             let amplitude = libm::exp10(-loss_db / 20.0) / length_m;
             let below_db = -20.0 * libm::log10(amplitude / transducer.detection_floor(air));
-            assert!((below_db - 5.0 * 1.5).abs() < 0.05, "{}: {below_db} dB", preset.title);
+            assert!((below_db - 5.0 * 1.5).abs() < 0.05, "{}: {below_db} dB", preset.name);
         }
     }
 

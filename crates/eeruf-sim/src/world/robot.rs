@@ -248,7 +248,7 @@ impl Robot {
             return *module;
         }
         let Transducer { gain, beam, .. } = self.transducer;
-        let known = PRESETS.iter().map(|preset| Module { gain, beam, ..*preset.module });
+        let known = PRESETS.iter().map(|&preset| Module { gain, beam, ..*preset });
         let known = known.into_iter().find(|module| Transducer::of(module) == self.transducer);
         known.unwrap_or_else(|| {
             let like = if self.transducer.frequency_hz > 45e3 { POLAROID_6500 } else { HC_SR04 };

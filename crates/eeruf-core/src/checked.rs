@@ -71,48 +71,23 @@ macro_rules! schedule {
         meets: $requirements:expr $(,)?
     ) => {
         const {
-            $crate::__checked(
-                $crate::Schedule::new(
-                    $crate::Micros::new($period),
-                    $crate::__micros($t_lag),
-                    [$crate::__micros($t_wait_a), $crate::__micros($t_wait_b)],
-                ),
-                &$requirements,
-            )
+            let waits = [$crate::__micros($t_wait_a), $crate::__micros($t_wait_b)];
+            let schedule = $crate::Schedule::new($crate::Micros::new($period), $crate::__micros($t_lag), waits);
+            $crate::__checked(schedule, &$requirements)
         }
     };
-    (
-        period_us: $period:expr,
-        t_fire_a_us: $t_fire_a:expr,
-        t_fire_b_us: $t_fire_b:expr,
-        meets: $requirements:expr $(,)?
-    ) => {
-        const {
-            $crate::__checked(
-                $crate::Schedule::from_firing(
-                    $crate::Micros::new($period),
-                    [$crate::__micros($t_fire_a), $crate::__micros($t_fire_b)],
-                ),
-                &$requirements,
-            )
-        }
+    (period_us: $period:expr, t_fire_a_us: $a:expr, t_fire_b_us: $b:expr, meets: $requirements:expr $(,)?) => {
+        const { $crate::__checked($crate::__fired($period, $a, $b), &$requirements) }
     };
-    (
-        period_us: $period:expr,
-        t_fire_a_us: $t_fire_a:expr,
-        t_fire_b_us: $t_fire_b:expr,
-        each_meets: $requirements:expr $(,)?
-    ) => {
-        const {
-            $crate::__checked_each(
-                $crate::Schedule::from_firing(
-                    $crate::Micros::new($period),
-                    [$crate::__micros($t_fire_a), $crate::__micros($t_fire_b)],
-                ),
-                &$requirements,
-            )
-        }
+    (period_us: $period:expr, t_fire_a_us: $a:expr, t_fire_b_us: $b:expr, each_meets: $requirements:expr $(,)?) => {
+        const { $crate::__checked_each($crate::__fired($period, $a, $b), &$requirements) }
     };
+}
+
+/// Implementation of `schedule!` with firing times.
+#[doc(hidden)]
+pub const fn __fired<const K: usize>(period_us: u32, a: [u32; K], b: [u32; K]) -> Result<Schedule<K>, ScheduleError> {
+    Schedule::from_firing(Micros::new(period_us), [__micros(a), __micros(b)])
 }
 
 /// Implementation of `schedule!` with `each_meets`.

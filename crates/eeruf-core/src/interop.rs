@@ -79,10 +79,12 @@ impl From<Duration> for Micros {
     }
 }
 
-#[cfg(all(test, feature = "fugit"))]
+#[cfg(test)]
 mod tests {
+    extern crate std;
     use super::*;
 
+    #[cfg(feature = "fugit")]
     #[test]
     fn fugits_times_go_there_and_back() {
         let duration = fugit::MicrosDurationU32::from_millis(24);
@@ -91,12 +93,6 @@ mod tests {
         let instant = fugit::WrappingTimerInstantU32::<1_000_000>::from_ticks(u32::MAX);
         assert_eq!(fugit::WrappingTimerInstantU32::from(Instant::from(instant)), instant);
     }
-}
-
-#[cfg(test)]
-mod tests_of_core {
-    extern crate std;
-    use super::*;
 
     // Durations of core survive a round trip within 32 bits of microseconds.
     #[test]
@@ -108,13 +104,9 @@ mod tests_of_core {
             assert_eq!(Micros::from(too_long), Micros::MAX);
         }
     }
-}
-
-#[cfg(all(test, feature = "embassy-time"))]
-mod tests_of_embassy {
-    use super::*;
 
     // Embassy's times survive a round trip beyond 32 bits of microseconds.
+    #[cfg(feature = "embassy-time")]
     #[test]
     fn embassy_times_round_trip_beyond_32_bits() {
         let duration = embassy_time::Duration::from_millis(24);

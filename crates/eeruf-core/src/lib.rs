@@ -81,7 +81,7 @@ mod verify;
 pub mod watch;
 
 #[doc(hidden)]
-pub use checked::{__checked, __checked_each, __micros};
+pub use checked::{__checked, __checked_each, __fired, __micros};
 pub use edges::{Edge, EdgeQueue};
 pub use filter::EchoFilter;
 pub use layout::Layout;

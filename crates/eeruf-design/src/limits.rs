@@ -12,11 +12,8 @@ pub const fn four() -> u8 {
 /// # Errors
 /// The number and what is expected.
 pub fn sensors_in_range(sensors: usize) -> Result<(), String> {
-    if (1..=MAX_SENSORS).contains(&sensors) {
-        Ok(())
-    } else {
-        Err(format!("{sensors} sensors; expected 1 to {MAX_SENSORS}"))
-    }
+    let fits = (1..=MAX_SENSORS).contains(&sensors);
+    fits.then_some(()).ok_or_else(|| format!("{sensors} sensors; expected 1 to {MAX_SENSORS}"))
 }
 
 /// Checks that this many adjacent sensors may be neighbours.
@@ -24,11 +21,8 @@ pub fn sensors_in_range(sensors: usize) -> Result<(), String> {
 /// # Errors
 /// The number and what is expected.
 pub fn neighbours_in_range(neighbours: u8) -> Result<(), String> {
-    if (1..=MAX_SENSORS).contains(&usize::from(neighbours)) {
-        Ok(())
-    } else {
-        Err(format!("neighbours = {neighbours}; expected 1 to {MAX_SENSORS}"))
-    }
+    let fits = (1..=MAX_SENSORS).contains(&usize::from(neighbours));
+    fits.then_some(()).ok_or_else(|| format!("neighbours = {neighbours}; expected 1 to {MAX_SENSORS}"))
 }
 
 pub(crate) fn number(name: &str, value: f64, least: f64, most: f64) -> Result<f64, String> {

@@ -100,7 +100,7 @@ pub use simulation::{
 pub use threads::{Stop, Threads, sweep};
 pub use tracing::{
     CriticalPath, CrosstalkMatrix, CrosstalkQuery, Heights, Limits, MAX_ORDER, Paths, PathsError, Reception, Tracer,
-    VERTICAL_ORDER, paths_of_many, reception, reception_along,
+    VERTICAL_ORDER, reception, reception_along,
 };
 pub use world::{
     AnySchedule, Clock, Fault, FaultKind, FiringTable, LineEdge, Motion, Noise, Random, ReadRing, Robot, RobotRing,

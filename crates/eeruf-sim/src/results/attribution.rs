@@ -4,7 +4,7 @@ use std::collections::HashMap;
 
 use serde::Serialize;
 
-use super::readings::{Cause, NO_PATH, Readings, SensorId};
+use super::readings::{Cause, Readings, SensorId};
 
 /// Wrong readings of one sensor from one cause.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
@@ -15,7 +15,7 @@ pub struct Attribution {
     pub cause: Cause,
     /// Sensor that caused the wrong readings, if there is one.
     pub emitter: Option<SensorId>,
-    /// Index into [`Readings::paths`], or [`NO_PATH`].
+    /// Index into [`Readings::paths`], or [`NO_PATH`](super::NO_PATH).
     pub path: u32,
     /// Number of bounces of the path.
     pub order: Option<u32>,
@@ -42,12 +42,5 @@ impl Readings {
         let mut rows: Vec<_> = rows.into_values().collect();
         rows.sort_by_key(|row| (core::cmp::Reverse((row.accepted, row.wrong)), row.receiver, row.cause, row.path));
         rows
-    }
-
-    /// Returns the paths along which at least one believed reading was wrong, as indices into [`Readings::paths`],
-    /// worst first, for drawing.
-    pub fn paths_that_fooled(&self, tolerance_us: f64) -> Vec<u32> {
-        let rows = self.attribution(tolerance_us);
-        rows.iter().filter(|row| row.accepted > 0 && row.path != NO_PATH).map(|row| row.path).collect()
     }
 }

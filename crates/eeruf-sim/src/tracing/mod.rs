@@ -27,6 +27,5 @@ pub use limits::{DEFAULT_FREQUENCY_HZ, Limits, MAX_BEAMS, MAX_ORDER};
 pub use paths::Paths;
 pub(crate) use reception::reception_at;
 pub use reception::{Reception, reception, reception_along};
-pub use short_forms::paths_of_many;
 pub use tracer::{Heights, Tracer};
 pub use vertical::VERTICAL_ORDER;

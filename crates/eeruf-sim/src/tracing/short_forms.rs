@@ -1,6 +1,4 @@
-//! Short forms of the query: one source in a scene, or many sources on all cores.
-
-use rayon::prelude::*;
+//! Short form of the query: one source in a scene.
 
 use super::error::PathsError;
 use super::limits::Limits;
@@ -8,24 +6,6 @@ use super::paths::Paths;
 use super::tracer::Tracer;
 use crate::geometry::Point;
 use crate::scene::Scene;
-use crate::threads::on_all_cores;
-
-/// Finds the paths of many sources at once, on all cores, in the order of the sources.
-///
-/// # Errors
-/// The error of [`Tracer::trace`] for the first source that fails.
-pub fn paths_of_many(
-    scene: &Scene,
-    sources: &[Point],
-    receivers: &[Point],
-    limits: Limits,
-) -> Result<Vec<Paths>, PathsError> {
-    let trace = |tracer: &mut Tracer, &source: &Point| {
-        let mut paths = Paths::default();
-        tracer.trace(scene, source, receivers, limits, &mut paths).map(|()| paths)
-    };
-    on_all_cores(|| sources.par_iter().map_init(Tracer::new, trace).collect())
-}
 
 impl Scene {
     /// Finds every specular path from a source to each receiver at

@@ -62,7 +62,6 @@ fn controls_rank_as_they_must_in_every_condition() {
     }
 }
 
-// This is a small part of `cargo lab measure --planted 20`.
 #[test]
 fn sound_way_is_recommended_over_planted_ones() {
     let sound = way("one_by_one_33ms");

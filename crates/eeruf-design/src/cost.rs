@@ -225,7 +225,7 @@ fn with_program(spec: &RingSpec, chosen: &Measured) -> Vec<(Family, usize)> {
     Family::ALL.into_iter().filter_map(of_family).collect()
 }
 
-/// Those of the programs that can be recommended.
+/// Returns the programs that can be recommended.
 fn recommendable(measured: &Measured, programs: &[(Family, usize)]) -> Vec<(Family, usize)> {
     let is_usable = |of: &&(Family, usize)| Way::of(&measured.ways[of.1]).is_some_and(Way::is_recommended);
     programs.iter().filter(is_usable).copied().collect()

@@ -1,8 +1,8 @@
 //! Tables of flow beside one by one, with and without a median of three: figures with 95 % intervals, and rows as CSV.
 //!
 //! `cargo lab flow-tables courses|robots|rooms [--ring RING.toml] [--first N] [--count N] [--csv FILE]`. Settings were
-//! chosen on scenes numbered below 2,000; figures are reported from number 20,000 on. Each table appends its rows to the
-//! file.
+//! chosen on scenes numbered below 2,000; figures are reported from number 20,000 on. Each table appends its rows to
+//! the file.
 
 mod courses;
 mod robots;

@@ -362,6 +362,8 @@ uint32_t EerufModules::collect(uint16_t soon, bool looks) {
     uint32_t now;
     // Only once: firings due within some 150 us of each other leave no time for it.
     EerufLines::makeUp();
+    // The ring decides here, which takes less stack than below an edge.
+    (void)eeruf_ring_due(modules_.ring);
     if (looks && looks_) {
         const uint32_t began = EerufLines::now(), away = began - seen_;
         away_ -= away_ / 16;
@@ -407,8 +409,6 @@ void EerufModules::fire(uint8_t sensor, bool looks) {
         return;
     }
     EerufPin::trigger(triggers_[sensor], echoes_[sensor], modules_.settings->trigger_us);
-    // The ring has put off its decision until now. The line rises later, unless it has limits of each sensor to read.
-    if (modules_.ring->schedule == nullptr) (void)eeruf_ring_due(modules_.ring);
     // The line rises soon: wait for it before loop() does other things.
     const uint32_t fired = ::micros();
     while (looks && looks_ && eeruf_hc_sr04_awaits(&modules_, sensor, &isHigh) && !isHigh && ::micros() - fired < RISES_US) {

@@ -207,7 +207,7 @@ pub(crate) fn main(arguments: &[String]) -> crate::Answer {
             let words = cost.cost.as_ref().map_or("none".to_owned(), |cost| with_interval(cost, 1.0, 3));
             println!("| {family} | {words} |");
         }
-        println!("\nRecommended: {}.\n", verdict(&costs));
+        println!("\nLeast cost: {}.\n", verdict(&costs));
         if let Some(out) = &mut out {
             for row in measured.csv().lines() {
                 writeln!(out, "{file},{row}")?;

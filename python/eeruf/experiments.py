@@ -218,9 +218,9 @@ def recommend(
     Returns:
         ``recommended``, the name of the way; ``keeps``, whether it has at most one false stop a minute under each condition in which
         the file says that the ring is used; ``draw``, a kind of way that may be better; ``assumed``, where the file is silent;
-        ``kinds``, each with its ``cost`` (how soon it sees what appears; the best one by one is 1) and the ``best`` way under each
-        condition with its figures; ``elsewhere``, the kind to recommend under each condition by itself; ``ways``, every way, if
-        asked for.
+        ``kinds``, each with its ``cost`` (how soon it sees what appears; the best one by one is 1), ``is_candidate`` (whether it can be
+        recommended) and the ``best`` way under each condition with its figures; ``elsewhere``, the kind to recommend under each
+        condition by itself; ``ways``, every way, if asked for.
 
     Raises:
         EerufError: a number is out of range, or the file cannot be read or does not say where its sensors are.

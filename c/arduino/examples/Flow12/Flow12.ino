@@ -1,6 +1,6 @@
 // Twelve HC-SR04 modules around a robot, each with trigger and echo on one pin of the Uno (2 to 13), that fire by flow:
 // one after the other, each with as much quiet around its firing as it has needed. There is no table to design. For
-// each accepted echo it prints the module's number and the distance in millimetres. One read() takes up to 0.8 ms on an
+// each accepted echo it prints the module's number and the distance in millimetres. One read() takes up to 1.1 ms on an
 // Uno.
 #include <EerufFlow.h>
 

@@ -5,9 +5,10 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from functools import partial
 from pathlib import Path
-from typing import Any, Callable
+from typing import Any
 
 import eeruf
 import numpy as np
@@ -84,22 +85,22 @@ def test_nothing_that_was_ended_runs_on() -> None:
 
 
 @pytest.fixture
-def interrupted_soon() -> Iterator[None]:
-    """Send Ctrl-C half a second from now."""
+def interrupt_soon() -> Iterator[Callable[[], object]]:
+    """Make a call that sends Ctrl-C half a second later."""
 
     def interrupt(*_: object) -> None:
         raise KeyboardInterrupt
 
     before = signal.signal(signal.SIGALRM, interrupt)
-    signal.setitimer(signal.ITIMER_REAL, 0.5)
-    yield
+    yield partial(signal.setitimer, signal.ITIMER_REAL, 0.5)
     signal.setitimer(signal.ITIMER_REAL, 0)
     signal.signal(signal.SIGALRM, before)
 
 
 @pytest.mark.parametrize("ask", [eeruf.logs.diagnose, eeruf.logs.survey])
-def test_a_question_about_a_log_that_was_ended_runs_on_nowhere(ask: Any, interrupted_soon: None) -> None:
-    sensors, periods, chance = 64, 2_000, np.random.default_rng(1)
+def test_a_question_about_a_log_that_was_ended_runs_on_nowhere(ask: Any, interrupt_soon: Callable[[], object]) -> None:
+    # Some seconds of work.
+    sensors, periods, chance = 64, 20_000, np.random.default_rng(1)
     sensor, period = np.tile(np.arange(sensors), periods), np.repeat(np.arange(periods), sensors)
     log = eeruf.logs.Firings.of(
         sensor=sensor,
@@ -109,17 +110,19 @@ def test_a_question_about_a_log_that_was_ended_runs_on_nowhere(ask: Any, interru
         t_echo_us=chance.integers(3_000, 30_000, sensors * periods).astype(float),
     )
     before = threads_of_the_process()
+    interrupt_soon()
     with pytest.raises(KeyboardInterrupt):
         ask(log)
-    for _ in range(20):
+    for _ in range(60):
         if threads_of_the_process() <= before:
             return
         time.sleep(0.05)
     assert threads_of_the_process() <= before
 
 
-def test_a_filter_that_was_ended_halfway_has_taken_in_nothing(interrupted_soon: None) -> None:
+def test_a_filter_that_was_ended_halfway_has_taken_in_nothing(interrupt_soon: Callable[[], object]) -> None:
     echoes = eeruf.EchoFilter(1, 500, 8, echoes=8)
+    interrupt_soon()
     with pytest.raises(KeyboardInterrupt):
         # Far more than half a second.
         echoes.push_many(np.full((40_000_000, 1), 9_000.0))

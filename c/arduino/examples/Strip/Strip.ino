@@ -1,7 +1,7 @@
 // Six HC-SR04 modules on pins 2 to 7 that fire by flow, and a strip of 30 LEDs on pin 8 that shows the nearest
 // obstacle. LED libraries call noInterrupts() for 0.9 ms, in which no echo can be timed, so the strip is written while
 // no echo is awaited. In the open one is always awaited, so every half second the modules pause for the strip.
-// One read() takes up to 1.2 ms on an Uno.
+// One read() takes up to 1.6 ms on an Uno.
 #include <EerufFlow.h>
 
 const uint8_t PINS[] = {2, 3, 4, 5, 6, 7};

@@ -66,7 +66,8 @@ fn kinds(answer: &RoomsAnswer) -> String {
     let of_kind = |KindCost { kind, cost, best, .. }: &KindCost| both(kind, cost.as_ref(), best);
     let candidates = kinds.iter().filter(|kind| kind.is_candidate);
     let rows = both("baseline", None, baseline).into_iter().chain(candidates.flat_map(of_kind)).flatten();
-    let titles = Vec::from_iter(BTreeSet::from_iter(baseline.iter().map(|way| way.title.as_str())));
+    let title = |way: &JudgedWay| way.title.clone() + if way.has_program { "" } else { ", without quiet" };
+    let titles = Vec::from_iter(BTreeSet::from_iter(baseline.iter().map(title)));
     format!(
         "\n{}\nms until what appears is seen: mean, t95 (95 of 100); {rooms} rooms each.\n\
          cost: mean relative to the baseline's ({}).\n\

@@ -76,12 +76,7 @@ def test_nothing_that_was_ended_runs_on() -> None:
     for call in long:
         with pytest.raises(KeyboardInterrupt):
             call()
-    # Threads that have ended are taken down by the system a little later.
-    for _ in range(100):
-        if threads_of_the_process() <= before:
-            return
-        time.sleep(0.05)
-    assert threads_of_the_process() <= before
+    assert ends_with_threads(before)
 
 
 @pytest.fixture
@@ -113,11 +108,7 @@ def test_a_question_about_a_log_that_was_ended_runs_on_nowhere(ask: Any, interru
     interrupt_soon()
     with pytest.raises(KeyboardInterrupt):
         ask(log)
-    for _ in range(60):
-        if threads_of_the_process() <= before:
-            return
-        time.sleep(0.05)
-    assert threads_of_the_process() <= before
+    assert ends_with_threads(before)
 
 
 def test_a_filter_that_was_ended_halfway_has_taken_in_nothing(interrupt_soon: Callable[[], object]) -> None:
@@ -131,6 +122,15 @@ def test_a_filter_that_was_ended_halfway_has_taken_in_nothing(interrupt_soon: Ca
 
 def threads_of_the_process() -> int:
     return len(os.listdir("/proc/self/task"))
+
+
+def ends_with_threads(most: int) -> bool:
+    """Wait for threads that have ended, which the system takes down a little later."""
+    for _ in range(60):
+        if threads_of_the_process() <= most:
+            return True
+        time.sleep(0.05)
+    return False
 
 
 def test_a_simulation_too_large_for_memory_is_a_memory_error(tmp_path: Path) -> None:

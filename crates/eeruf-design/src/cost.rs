@@ -84,6 +84,8 @@ pub struct JudgedWay {
     pub votes: String,
     /// False for more than one false stop a minute in the rooms where votes are chosen.
     pub keeps: bool,
+    /// False if no program fires so: without quiet for each sensor, or blocking.
+    pub has_program: bool,
     /// The figures.
     #[serde(flatten)]
     pub figures: Cell,
@@ -182,6 +184,7 @@ impl Both {
                 title: measured.ways[way].in_words(setting),
                 votes: setting.to_string(),
                 keeps: matches!(operating, Operating::At(_)),
+                has_program: Way::of(&measured.ways[way]).is_some(),
                 figures: under.cell(point, measured),
                 rooms: under.right_by_room(under.sights(point)),
             })

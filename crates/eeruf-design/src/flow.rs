@@ -2,6 +2,7 @@
 
 use eeruf_core::flow::{BeliefSettings, TurnSettings};
 use eeruf_core::{EachSensor, MAX_SENSORS, Micros, SensorLimits};
+use eeruf_sim::modules::Interface;
 use eeruf_sim::{Pose, Robot};
 
 use crate::ring::RingSpec;
@@ -77,8 +78,9 @@ impl RingSpec {
         let shares_lines = needs.uneven.is_some_and(|uneven| !uneven.shared_lines.is_empty());
         let is_alike = together.is_empty() && !shares_lines && limits.iter().all(|of| of.window >= window);
         // A ring file without a module is taken for one of modules that answer by a pulse.
-        let rise_us = self.modules.iter().map(|module| module.interface.rise_us()).max().unwrap_or(1_000);
-        let listens = |echo: Micros| echo.min(window).saturating_add(Micros::new(rise_us));
+        let rise_us = self.modules.iter().map(|module| module.interface.rise_us()).max();
+        let rise = Micros::new(rise_us.unwrap_or(Interface::PulseWidth.rise_us()));
+        let listens = |echo: Micros| echo.min(window).saturating_add(rise);
         let limits = if is_alike {
             EachSensor::NONE
         } else {

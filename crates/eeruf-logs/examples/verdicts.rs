@@ -1,4 +1,5 @@
-//! Counts the doctor's verdicts on logs of known truth: `cargo run --release --example verdicts [FIRST [LOGS]]`.
+//! Counts the doctor's verdicts on logs of known truth, and fails if too many are wrong:
+//! `cargo run --release --example verdicts [FIRST [LOGS]]`.
 
 #[path = "../tests/all/random.rs"]
 mod random;
@@ -11,6 +12,8 @@ fn main() -> Result<(), std::num::ParseIntError> {
     let mut arguments = std::env::args().skip(1);
     let mut next = |default: u64| arguments.next().map_or(Ok(default), |text| text.parse());
     let (first, logs) = (next(20_000)?, next(200)?);
-    println!("{}", verdicts::Counts::of(first, logs));
+    let counts = verdicts::Counts::of(first, logs);
+    println!("{counts}");
+    counts.hold();
     Ok(())
 }

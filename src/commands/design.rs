@@ -20,7 +20,7 @@ use super::{Answer, show};
 use crate::console::{print, print_line, tell};
 use crate::files::error::InputError;
 use crate::files::ring::read_ring;
-use crate::program::{flow_source, wrapped};
+use crate::program::{flow_source, pulse_times, wrapped};
 use crate::report::design::describe;
 use crate::report::draw;
 use crate::report::json::to_json;
@@ -301,9 +301,17 @@ fn how_to(name: &str, spec: &RingSpec, how: Option<&How>, rooms: &Result<RoomsAn
         text += &format!("\nAssumed: {assumed}.");
     }
     let languages = if how.order.is_empty() { "" } else { " (or rust, c, micropython, ros2)" };
-    let get = match spec.modules.is_empty() {
-        true => "name the module in the file, as `module = \"hc-sr04\"`; then --program arduino".to_owned(),
-        false => format!("eeruf design {name} --program arduino{languages}"),
+    let get = match pulse_times(spec) {
+        _ if spec.modules.is_empty() => {
+            "name the module in the file, as `module = \"hc-sr04\"`; then --program arduino".to_owned()
+        }
+        Ok(_) => format!("eeruf design {name} --program arduino{languages}"),
+        Err(why) => {
+            format!(
+                "eeruf design {name} --way {} --emit rust (or c, arduino): settings of a ring\nNo program: {why}",
+                how.way
+            )
+        }
     };
     format!("{text}\n\nTo get it: {get}\n")
 }

@@ -140,7 +140,7 @@ fn chosen(language: Language, board: Option<Board>) -> Result<Option<Board>, Str
 }
 
 /// Returns the times of the ring's modules.
-fn pulse_times(spec: &RingSpec) -> Result<PulseTimes, String> {
+pub(crate) fn pulse_times(spec: &RingSpec) -> Result<PulseTimes, String> {
     let Some(module) = spec.modules.first() else {
         return Err(
             "the ring file names no module; expected `module`, as \"hc-sr04\", for a program to know its times".into(),

@@ -38,11 +38,11 @@ macro_rules! tables {
 }
 
 tables! {
-    car_12 "emitted/car_12.rs" "rings/car-12.toml" 12 RingConfig::new();
+    car_12 "emitted/car_12.rs" "rings/car-12.toml" 12 car_12::CONFIG;
     hc_sr04_8 "emitted/hc_sr04_8.rs" "rings/hc-sr04-8.toml" 8 hc_sr04_8::CONFIG;
     labmate_8 "emitted/labmate_8.rs" "rings/labmate-8.toml" 8 RingConfig::new();
     magni_5 "emitted/magni_5.rs" "rings/magni-5.toml" 5 magni_5::CONFIG;
-    mower_8_and_4 "emitted/mower_8_and_4.rs" "rings/mower-8-and-4.toml" 12 RingConfig::new();
+    mower_8_and_4 "emitted/mower_8_and_4.rs" "rings/mower-8-and-4.toml" 12 mower_8_and_4::CONFIG;
     multiplexers_8 "emitted/multiplexers_8.rs" "rings/hc-sr04-8-two-multiplexers.toml" 8 multiplexers_8::CONFIG;
     nao_2 "emitted/nao_2.rs" "rings/nao-2.toml" 2 nao_2::CONFIG;
     paper_12 "emitted/paper_12.rs" "rings/paper-12.toml" 12 RingConfig::new();
@@ -128,7 +128,7 @@ fn emitted_flow_drives_a_ring_whose_modules_rest() {
 fn emitted_uneven_table_drives_its_ring() {
     let ring = Ring::<_, _, 12>::new(&car_12::RING, RingConfig::new(), Instant::default()).unwrap();
     assert_eq!((ring.window_of(1), ring.window_of(4)), (Micros::new(32_051), Micros::new(11_655)));
-    assert_eq!((ring.t_delta_of(1), ring.t_delta_of(4)), (Micros::new(644), Micros::new(894)));
+    assert_eq!((ring.t_delta_of(1), ring.t_delta_of(4)), (Micros::new(1_395), Micros::new(1_645)));
 }
 
 // In C only those sensors of a car accept a wall that look as far.

@@ -172,7 +172,9 @@ fn own_scenes_are_rooms_and_options_of_scenes_are_refused() {
         let refused = eeruf(&words);
         assert!(refused.code == Some(2) && refused.err.contains(said), "{words:?}: {}", refused.err);
     }
-    let pairs = eeruf(&["study", "rings/mower-8-and-4.toml"]);
+    let mower = include_str!("../../rings/mower-8-and-4.toml");
+    let (_scratch, file) = Scratch::new("ring.toml", mower.split_once("poses = ").unwrap().0);
+    let pairs = eeruf(&["study", file.to_str().unwrap()]);
     assert!(
         pairs.code == Some(1) && pairs.out.contains("not judged in rooms: the ring file does not say"),
         "{}",

@@ -88,7 +88,7 @@ fn every_emitted_table_starts_and_fires() {
             start(&emitted.out, schedule, settings).unwrap_or_else(|why| panic!("{}: {form}: {why}", ring.display()));
         }
     }
-    assert_eq!(with_modules, 10, "five ring files name HC-SR04 modules");
+    assert_eq!(with_modules, 12, "six ring files name one kind of module");
 }
 
 #[test]

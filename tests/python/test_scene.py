@@ -268,17 +268,16 @@ def test_how_a_ring_is_fired_today_is_said_in_code_as_in_a_file() -> None:
 
 def test_a_ring_file_makes_the_same_robot_in_code_as_in_a_scene(tmp_path: Path) -> None:
     rings = SCENES.parent / "rings"
-    makes: Any = ["jsn-sr04t"] * 4 + ["hc-sr04"] * 8
-    made = sim.Robot((0, 0, 0), ring=rings / "car-12.toml", module=makes, blanking_us=900)
+    made = sim.Robot((0, 0, 0), ring=rings / "car-12.toml", blanking_us=900)
     ring = (rings / "car-12.toml").read_text()
     (tmp_path / "car.toml").write_text(ring)
     scene = tmp_path / "scene.toml"
     scene.write_text(
-        f"[[robot]]\npose = {{ x_m = 0, y_m = 0 }}\nring = 'car.toml'\nmodule = {makes}\nblanking_us = 900\n"
+        f"[[robot]]\npose = {{ x_m = 0, y_m = 0 }}\nring = 'car.toml'\nblanking_us = 900\n"
     )
     read = sim.Scene.read_toml(scene).robots[0]
     assert read == made
-    assert (made.sensors, made.neighbours, made.module) == (12, 3, makes)
+    assert (made.sensors, made.neighbours, made.module) == (12, 3, "jsn-sr04t")
     far_m = [4.5, 5.5, 5.5, 4.5, 2.0, 2.0, 2.5, 3.0, 3.0, 2.5, 2.0, 2.0]
     assert made.window_us == [round(2e6 * range_m / 343.2) for range_m in far_m]
     # Driving as fast as the file says, unless odometry knows: 2 v T / c, of 75 ms at 1.5 m/s.
@@ -298,11 +297,6 @@ def test_a_ring_file_makes_the_same_robot_in_code_as_in_a_scene(tmp_path: Path) 
         sim.Robot((0, 0, 0), ring="nowhere.toml")
 
 
-# The mower's sensors: eight around the hull, four over its front edge.
-MOWER = [
-    (0.35, 0.0, 0.0), (0.25, -0.2, -0.8), (0.0, -0.25, -1.6), (-0.25, -0.2, -2.4), (-0.35, 0.0, 3.1), (-0.25, 0.2, 2.4),
-    (0.0, 0.25, 1.6), (0.25, 0.2, 0.8), (0.36, 0.12, 0.3), (0.36, -0.12, -0.3), (0.36, 0.06, 0.1), (0.36, -0.06, -0.1),
-]  # fmt: skip
 RINGS = sorted(path for path in (SCENES.parent / "rings").glob("*.toml") if not path.name.startswith("table-"))
 
 
@@ -313,18 +307,17 @@ def places(poses: list[tuple[float, float, float]]) -> str:
 def test_a_mower_in_code_reads_what_it_reads_from_a_file(tmp_path: Path) -> None:
     path = SCENES.parent / "rings" / "mower-8-and-4.toml"
     ring = pytest.importorskip("tomllib").loads(path.read_text())
-    makes: Any = ["hc-sr04"] * 8 + ["ping"] * 4
-    asked = sim.Robot((0, 0, 0), MOWER, ring=path, module=makes)
+    asked = sim.Robot((0, 0, 0), ring=path)
     pairs = {key: [tuple(pair) for pair in ring[key]] for key in ("layout", "intervals_us", "together")}
     needs: Any = {"tick_us": ring["tick_us"], "budget": 200_000, **pairs}
     found = eeruf.design(12, asked.t_delta_us, ring["min_interval_us"], asked.window_us, **needs)
     assert found.schedule is not None
-    made = sim.Robot((0, 0, 0), MOWER, ring=path, module=makes, blanking_us=900, schedule=found.schedule)
+    made = sim.Robot((0, 0, 0), ring=path, blanking_us=900, schedule=found.schedule)
     scene = tmp_path / "scene.toml"
     scene.write_text(
         "seed = 1\n[[wall]]\npoints_m = [[-2, -2], [2, -2], [2, 2], [-2, 2]]\nclosed = true\n\n"
-        f"[[robot]]\npose = {{ x_m = 0, y_m = 0 }}\nsensors = [{places(MOWER)}]\nring = {str(path)!r}\n"
-        f"module = {makes}\nblanking_us = 900\n\n[robot.schedule]\n{found.schedule.to_toml()}"
+        f"[[robot]]\npose = {{ x_m = 0, y_m = 0 }}\nring = {str(path)!r}\n"
+        f"blanking_us = 900\n\n[robot.schedule]\n{found.schedule.to_toml()}"
     )
     read = sim.Scene.read_toml(scene)
     assert read.robots[0] == made

@@ -14,13 +14,17 @@ fn design(spec: &RingSpec) -> RingDesign {
     found.expect("there is a schedule")
 }
 
-/// Three realistic rings of `rings/`.
-fn rings() -> [(&'static str, &'static str); 3] {
-    [
+/// Three realistic rings of `rings/`, without the rest of their modules, which would decide their periods alone.
+fn rings() -> [(&'static str, String); 3] {
+    let rings = [
         ("car-12", include_str!("../../../../rings/car-12.toml")),
         ("hc-sr04-8-two-multiplexers", include_str!("../../../../rings/hc-sr04-8-two-multiplexers.toml")),
         ("mower-8-and-4", include_str!("../../../../rings/mower-8-and-4.toml")),
-    ]
+    ];
+    rings.map(|(name, text)| {
+        let rest = if text.contains("retrigger_us") { "" } else { "retrigger_us = 0\n" };
+        (name, format!("{text}{rest}"))
+    })
 }
 
 // The uneven rings have a shortest period that is verified and certified.
@@ -28,7 +32,7 @@ fn rings() -> [(&'static str, &'static str); 3] {
 fn uneven_rings_are_verified_and_certified() {
     let mut certificates = Vec::new();
     for ((name, text), period_us) in rings().into_iter().zip([34_100, 61_500, 37_000]) {
-        let spec = read(text);
+        let spec = read(&text);
         let found = design(&spec);
         assert!(found.found.proven, "{name}: {:?}", found.found);
         assert_eq!(found.schedule.period(), Micros::new(period_us), "{name}");

@@ -4,7 +4,7 @@
 //! firing in progress with its edges, and the echoes of earlier firings. It does not know when the ring will emit
 //! something, only what it may emit:
 //!
-//! - only enabled sensors fire, no sooner after the firing before than in the schedule, and on time if the ring was
+//! - only enabled sensors fire, no sooner after the previous firing than in the schedule, and on time if the ring was
 //!   polled on time;
 //! - after a restart or a change of schedule, no two sensors fire closer together than the previous schedule allowed;
 //! - each firing gives one reading, with the sensor's own phase, period and echo, before that sensor fires again and as

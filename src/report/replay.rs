@@ -33,7 +33,7 @@ pub(crate) struct Replay {
     pub(crate) firing: Option<Firing>,
 }
 
-/// Firing pattern of a log's sensors, and what agreement proves for it.
+/// Firing pattern of a log's sensors, and what readings that agree prove under it.
 #[derive(Serialize)]
 pub(crate) struct Firing {
     pub(crate) pattern: &'static str,

@@ -11,7 +11,7 @@ use serde::Serialize;
 use super::table::{markdown, or_dash};
 use super::three::{stops, t95};
 
-/// The recommended way with a row for each kind, and under which conditions it would be another; or why there is none.
+/// Describes the recommended way, with a row for each kind and the conditions that change it; or why there is none.
 pub(crate) fn describe(name: &str, judged: &Result<RoomsAnswer, String>) -> String {
     match judged {
         Ok(answer) => verdict(name, answer) + &kinds(answer) + &depends_on(answer),

@@ -34,7 +34,7 @@ pub(crate) fn begin() {
     interrupted().store(false, Ordering::Relaxed);
 }
 
-/// Prints progress without a terminal until the result is dropped, also that of commands that have no [`Watch`].
+/// Without a terminal, prints progress until the result is dropped, also for commands that have no [`Watch`].
 pub(crate) fn said() -> Sender<()> {
     let (running, ended) = channel();
     if !settings().quiet && !std::io::stderr().is_terminal() {
@@ -44,7 +44,7 @@ pub(crate) fn said() -> Sender<()> {
     running
 }
 
-/// Says the progress after the first time, and again after each further one, until the sender is dropped.
+/// Prints the progress after the first duration, then each time the second has passed, until the sender is dropped.
 fn say(ended: &Receiver<()>, [mut pause, every]: [Duration; 2]) {
     let began = Instant::now();
     while ended.recv_timeout(pause) == Err(RecvTimeoutError::Timeout) {

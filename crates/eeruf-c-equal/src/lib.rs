@@ -90,7 +90,7 @@ impl Claim {
 /// Needs of one sensor: `window_us`, `t_delta_us` and `group` of an EerufLimits.
 pub type OwnNeeds = [u32; 3];
 
-/// A ring in C, of either kind, with its schedules and modules, in memory of exactly the required size.
+/// A ring in C, by tables or by flow, with its schedules and modules, in memory of exactly the required size.
 #[derive(Debug)]
 pub struct C(*mut c_void);
 
@@ -166,7 +166,7 @@ impl C {
         if status == EVENT { Ok(flat) } else { Err(status) }
     }
 
-    /// Calls `eeruf_ring_upcoming` until there is none: sensors and instants.
+    /// Calls `eeruf_ring_upcoming` until it returns nothing; lists sensors and instants.
     pub fn upcoming(&self) -> Vec<[u32; 2]> {
         let next = |number| {
             let mut out = [0; 2];
@@ -209,7 +209,7 @@ impl C {
         unsafe { shim::shim_between(self.0, what as u32, sensor, least, most) }
     }
 
-    /// Makes the last event, a reading, ambiguous.
+    /// Marks the last event, a reading, as ambiguous.
     pub fn explain(&mut self, explained_by: u8) {
         // SAFETY: an event that was polled.
         unsafe { shim::shim_explain(self.0, explained_by) }

@@ -330,7 +330,7 @@ pub struct Outcome {
     pub partner: Vec<Said>,
 }
 
-/// Runs a driver. The fault begins `onset_us` after the start; until then the sensor is well and faces a wall.
+/// Runs a driver. The fault begins `onset_us` after the start; until then the sensor is healthy and faces a wall.
 fn run(driver: &mut dyn Driver, wires: &Wires, fault: &Fault, onset_us: u32, start: u32) -> Outcome {
     let partner = if let Wiring::Exchanged(with) = fault.wiring { Some(with) } else { None };
     let (mut outcome, mut periods, mut now) = (Outcome::default(), 0, start);

@@ -31,7 +31,7 @@ impl Random {
         Self(Source::Seed(seed, Cell::new(seed)))
     }
 
-    /// Creates one that draws from bytes: each number takes what it needs, little-endian. Past the end all are 0.
+    /// Creates a generator that draws from bytes, little-endian, as many as each number needs. Past the end all are 0.
     pub fn of_bytes(bytes: &[u8]) -> Self {
         Self(Source::Bytes(bytes.into(), Rc::default()))
     }

@@ -184,8 +184,8 @@ pub trait Judge {
     fn believed(&self, _sensor: u8) -> Option<Micros> {
         None
     }
-    /// The firing that the echo time of a sensor's last verdict belongs to: 0 for the last one, 1 for the one before,
-    /// and so on.
+    /// The firing that the echo time of a sensor's last verdict belongs to: 0 for the last one, 1 for the one before
+    /// it, and so on.
     fn stands_for(&self, _sensor: u8) -> u8 {
         0
     }

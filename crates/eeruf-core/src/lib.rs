@@ -2,8 +2,8 @@
 //!
 //! Sensors that fire at the same time hear each other: *crosstalk*. Firing one by one avoids it but is slow. EERUF
 //! fires every sensor once per period `T_p` at `T_fire = T_lag + T_wait`, where `T_wait` alternates between two values
-//! that differ from sensor to sensor, and accepts a reading only if it is near-identical to the one before. A true echo
-//! does not depend on the waits; crosstalk shifts with them and is rejected. The proofs are in [`theory`].
+//! that differ from sensor to sensor, and accepts a reading only if it is near-identical to the previous one. A true
+//! echo does not depend on the waits; crosstalk shifts with them and is rejected. The proofs are in [`theory`].
 //!
 //! ```
 //! use eeruf_core::{Instant, ReadingKind, Ring, RingConfig, RingEvent, tables::PAPER_12};
@@ -97,7 +97,7 @@ pub use time::{Instant, Micros};
 pub use uneven::Uneven;
 pub use verified::VerifiedSchedule;
 
-/// Judges of readings: the trait [`Judge`](judge::Judge), and those other than [`EchoFilter`].
+/// Judges of readings: the trait [`Judge`](judge::Judge), and all judges except [`EchoFilter`].
 pub mod judge {
     pub use crate::filter::MedianFilter;
     pub use crate::flow::m_of_n::MOfN;

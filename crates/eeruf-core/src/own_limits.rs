@@ -149,8 +149,8 @@ impl<const K: usize> EachSensor<K> {
         self
     }
 
-    /// Limits for which a schedule of this many sensors was verified: those of all sensors, and sets of sensors that
-    /// fire together, bit x for sensor x.
+    /// Makes the limits for which a schedule of this many sensors was verified, from each sensor's limits and the sets
+    /// of sensors that fire together, bit x for sensor x.
     pub(crate) const fn new(
         verified_for: VerifiedFor,
         sensors: usize,

@@ -171,7 +171,7 @@ pub enum ViolationKind {
     CrosstalkA,
     /// Crosstalk an odd number of periods old would pass: Eq. (13b).
     CrosstalkB,
-    /// A sensor's own echo from the period before would pass.
+    /// A sensor's own echo from the previous period would pass.
     StaleEcho,
     /// Two neighbours fire too close together: Sec. 3.1 c.
     Interval,

@@ -12,7 +12,7 @@ pub struct RoomsAsked {
     /// Number of the first room of each kind. The default is 0: ways are chosen on numbers below 2,000, and reported
     /// from 20,000 on.
     pub first: u64,
-    /// True to measure every way, and what the answer would be beside others and with the other gain.
+    /// True to measure every way, and to give the answer beside other robots and with the other gain too.
     pub all: bool,
 }
 

@@ -32,7 +32,7 @@ pub fn make(ring: &Ring) -> Result<Row, String> {
     searched(ring, scaled(BUDGET, ring)).and_then(|row| again(&row, 0))
 }
 
-/// The row from this search, without a longer search.
+/// Makes the row from one search of at most `nodes` nodes.
 fn searched(ring: &Ring, nodes: u64) -> Result<Row, String> {
     let found = ring.problem().shortest(nodes, &mut ()).map_err(|error: SearchError| error.to_string())?;
     let [period, bound] = [found.period(), found.bound].map(in_ticks);

@@ -27,7 +27,7 @@ pub struct RoomsAnswer {
     /// The way to recommend: one by one or flow; none if neither can fire the ring.
     #[serde(rename = "recommended", serialize_with = "name")]
     pub best: Option<RoomWay>,
-    /// True if it has at most one false stop a minute under each condition; else it has the fewest.
+    /// True if `best` has at most one false stop a minute under each condition; otherwise it has the fewest.
     pub keeps: bool,
     /// A kind of way that costs less, but not significantly.
     pub draw: Option<String>,
@@ -43,7 +43,7 @@ pub struct RoomsAnswer {
     pub conditions: Vec<UnderCondition>,
     /// The best one by one under each condition, with any gap and votes.
     pub baseline: Vec<JudgedWay>,
-    /// The kinds of ways, as programs have them, the simplest first.
+    /// The kinds of ways that programs have, the simplest first.
     pub kinds: Vec<KindCost>,
     /// The kind to recommend where the ring is used under one condition alone, or its modules have the other gain. Only
     /// conditions that the ring file names are included unless everything was asked for.
@@ -57,7 +57,7 @@ fn name<S: Serializer>(best: &Option<RoomWay>, serializer: S) -> Result<S::Ok, S
     best.as_ref().map(|best| best.name).serialize(serializer)
 }
 
-/// A kind of way: of those that a program has, the one that costs least in the rooms where votes are chosen.
+/// A kind of way: its cheapest way that a program has, judged in the rooms where votes are chosen.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct KindCost {
     /// The name.
@@ -84,7 +84,7 @@ pub struct JudgedWay {
     pub votes: String,
     /// False for more than one false stop a minute in the rooms where votes are chosen.
     pub keeps: bool,
-    /// False if no program fires so: without quiet for each sensor, or blocking.
+    /// False if no program fires like this: a way without quiet for each sensor, or a blocking loop.
     pub has_program: bool,
     /// The figures.
     #[serde(flatten)]
@@ -213,7 +213,7 @@ impl Both {
     }
 }
 
-/// The way of each family that a program has: of several, the one that costs least in the rooms where votes are chosen.
+/// The cheapest way of each family that a program has, judged in the rooms where votes are chosen.
 fn with_program(spec: &RingSpec, chosen: &Measured) -> Vec<(Family, usize)> {
     let fires =
         |way: &RoomWay| Way::of(way).is_some_and(|of| of == Way::TwoPhases || spec.fired(of, &way.robot, 1).is_ok());
@@ -248,7 +248,8 @@ impl RingSpec {
     /// `false`, the judgement stops.
     ///
     /// # Errors
-    /// A ring without places, a room in which its robot cannot be, and if it was stopped, in words.
+    /// The reason, in words, if the ring has no places, a room cannot hold its robot, or `keep_going` stopped
+    /// the judgement.
     pub fn judge_in_rooms(
         &self,
         design: Option<&RingDesign>,

@@ -25,7 +25,7 @@ pub struct FlowDesign {
 /// Speed in m/s from which on a flow ring listens no farther than the robot needs to see, a choice: a slower robot can
 /// wait.
 const FAST_M_S: f64 = 1.0;
-/// The range in metres that driving among obstacles needs at any speed: a choice, by courses among poles below 2,000.
+/// The range in metres that driving among obstacles needs at any speed: a choice, made on courses below 2,000.
 const NEAR_M: f64 = 2.4;
 /// Deceleration in m/s^2, and reaction time in seconds: choices, those of a heavy platform.
 const BRAKES_M_S2: f64 = 1.0;
@@ -52,7 +52,7 @@ pub fn turns_of(robot: &Robot, seed: u32) -> TurnSettings {
 }
 
 impl RingSpec {
-    /// The settings by which the ring fires by flow, with the seed of its dice.
+    /// The settings by which the ring fires by flow, with this seed of its random gaps.
     ///
     /// # Errors
     /// The first reason why the ring's robot cannot be built.

@@ -87,7 +87,7 @@ impl LayoutKey {
     /// The layout of this many sensors, of which this many adjacent ones are neighbours.
     ///
     /// # Errors
-    /// A pair that names a sensor out of range, or one twice.
+    /// A pair that names a sensor out of range, or the same sensor twice.
     pub fn owned(&self, neighbours: u8, sensors: usize) -> Result<OwnedLayout, String> {
         let pairs = match self {
             Self::Unsaid => return Ok(OwnedLayout { name: Some(LayoutName::Line), neighbours, rows: vec![] }),

@@ -236,7 +236,7 @@ impl<'s> Moving<'s> {
         Ok(shortest)
     }
 
-    /// A schedule that serves: each next one is searched for with the `t_delta` that the last one needs.
+    /// Searches for a schedule that serves: each search uses the `t_delta` that the schedule found before it needs.
     fn climb(&mut self, lower: &FoundPeriod, control: &mut impl Control) -> Result<Option<AnySchedule>, SearchError> {
         let mut schedule = lower.schedule;
         while !self.spec.serves(&schedule) {

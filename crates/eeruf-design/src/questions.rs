@@ -16,7 +16,7 @@ pub struct Fit {
     pub schedule: Option<AnySchedule>,
     /// The ring with the `t_delta` that the schedule needs.
     pub spec: RingSpec,
-    /// The largest `t_delta` found; if sensors have their own, each grows by the same, and this is the largest.
+    /// The largest `t_delta` found; if sensors have their own, each grows by the same amount, and this is the largest.
     pub t_delta: Option<Micros>,
     /// Proven bound of `t_delta` with that period; `None` if none meets the other needs, or if it is unknown.
     pub bound: Option<Micros>,

@@ -51,7 +51,7 @@ pub(crate) struct RingFile {
     layout: LayoutKey,
     #[serde(default = "one_millisecond")]
     tick_us: u32,
-    /// Rejection of a sensor's own echo from the period before; by default if modules are named, since they hear
+    /// Rejection of a sensor's own echo from the previous period; by default if modules are named, since they hear
     /// farther than they see.
     stale_echo: Option<bool>,
     /// The modules: they give range and rest of each sensor unless the file does.
@@ -120,7 +120,7 @@ pub struct RingSpec {
     pub sees_by_module: bool,
     /// Least time between two triggers, if all sensors are alike; zero if they have their own.
     pub retrigger: Micros,
-    /// True if a sensor's own echo from the period before must be rejected too.
+    /// True if a sensor's own echo from the previous period must be rejected too.
     pub stale_echo: bool,
     /// True if only the modules require `stale_echo`.
     pub stale_echo_by_module: bool,
@@ -130,7 +130,7 @@ pub struct RingSpec {
     pub t_delta: Micros,
     /// Speed of the robot, in mm/s, if `t_delta` must cover its motion too.
     pub speed_mm_s: Option<u32>,
-    /// The time that the controller needs for one firing; it makes closer firings one after the other.
+    /// The time that the controller needs for one firing; firings planned closer together happen one after the other.
     pub handling: Micros,
     /// P: the largest change of a foreign sound's path from one reading to the next on a robot that
     /// stands; `None` for `t_delta`.
@@ -160,7 +160,7 @@ fn each<T>(modules: &ModulesFile, figure: impl Fn(&Module) -> T) -> Each<T> {
 }
 
 impl RingSpec {
-    /// Returns the ring with a `t_delta` that covers this much; if sensors have their own, each grows by the same.
+    /// Returns the ring with a `t_delta` that covers this much; sensors' own ones all grow by the same amount.
     #[must_use]
     pub fn covering(&self, t_delta: Micros) -> Self {
         let more = t_delta.saturating_sub(self.t_delta);

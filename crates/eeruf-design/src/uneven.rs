@@ -75,10 +75,10 @@ impl OwnedUneven {
         Self { window: self.window.iter().map(|window| other(*window)).collect(), ..self.clone() }
     }
 
-    /// Returns true if no two sensors that fire together must keep a time between their firings.
+    /// Checks that no two sensors that fire together must keep a time between their firings.
     ///
     /// # Errors
-    /// Two sensors that must.
+    /// The first two sensors that must keep one, in words.
     pub fn can_fire_together(requirements: &Requirements<'_>, sensors: usize) -> Result<(), String> {
         for (x, y) in (0..sensors).flat_map(|x| (x + 1..sensors).map(move |y| (x, y))) {
             let gap = requirements.gap_after(sensors, x, y).max(requirements.gap_after(sensors, y, x));

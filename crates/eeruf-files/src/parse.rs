@@ -33,7 +33,7 @@ const UNITS: [(&str, &str); 5] =
 /// Reads a TOML text.
 ///
 /// # Errors
-/// The first thing wrong with it, with its line and key.
+/// The first error, with its line and key.
 ///
 /// ```
 /// #[derive(Debug, serde::Deserialize)]

@@ -7,7 +7,7 @@ use eeruf_core::{Instant, Micros, ReadingKind, Ring, RingEvent};
 /// Watches whether a loop polls a ring often enough.
 #[derive(Clone, Copy, Debug)]
 pub struct Pace {
-    /// Sensors with a punctual reading since `since`, and with two in a row, bit x for sensor x.
+    /// Sensors with a punctual reading since `since`, and sensors with two in a row; bit x for sensor x.
     heard: u64,
     twice: u64,
     since: Instant,
@@ -38,9 +38,9 @@ impl Pace {
         }
     }
 
-    /// Returns true, about once a second, and from ten sensors on once in 0.1 s a sensor, if the loop is too slow: a
-    /// sensor had no two such readings in it, or a table's firings came more than a millisecond late, which makes
-    /// readings ambiguous.
+    /// Returns true, at most once a second or once in 0.1 s per sensor if that is longer, if the loop was too slow
+    /// since: a sensor had no two punctual readings in a row, or a table's firings were more than a millisecond late,
+    /// which makes readings ambiguous.
     pub fn too_slow<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize>(
         &mut self,
         ring: &Ring<P, J, K, E, H>,

@@ -19,7 +19,7 @@ pub struct Settings {
     pub shortest: Micros,
     /// Latest rise after the trigger: a line that rises later was raised by another sensor, whose wires are exchanged.
     pub latest_rise: Micros,
-    /// Shortest pulse that is the sensor's own time-out (up to a nineteenth short), not an echo.
+    /// Shortest pulse that counts as the sensor's own time-out, which may be a nineteenth short, and not as an echo.
     pub longest: Micros,
     /// Longest time for which a healthy sensor holds its line if nothing is in range; many clones take 130 to 200 ms. A
     /// line that rose after its trigger and has been high for a shorter time is not stuck.

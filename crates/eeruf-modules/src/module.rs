@@ -166,7 +166,7 @@ pub struct PulseTimes {
     /// A line that rises later than this was not raised by the trigger, for example if wires are swapped. An HC-SR04
     /// takes half a millisecond, so this choice catches even one that fires a millisecond late.
     pub latest_rise_us: u32,
-    /// Pulses this long or longer are the module's own time-out, which may be a nineteenth short: no echo.
+    /// Pulses this long or longer are no echo, but the module's own time-out, which may be a nineteenth short.
     pub longest_us: u32,
     /// The longest time for which a healthy module holds its line where nothing is in range, plus a quarter.
     pub longest_hold_us: u32,

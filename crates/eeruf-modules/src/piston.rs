@@ -45,7 +45,6 @@ impl Piston {
     /// ```
     /// This is Sommerfeld's shadow at grazing incidence (Born and Wolf, Principles of Optics, Sec. 11.5) without the
     /// edge wave's ripple in front, which a round rim and a short burst smear.
-    /// ripple in front left out, which a round rim and a short burst smear.
     ///
     /// ```
     /// use eeruf_modules::{Beam, Piston};

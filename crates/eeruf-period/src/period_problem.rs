@@ -161,8 +161,8 @@ impl PeriodProblem<'_> {
 
     /// Finds, among the schedules with the period of this one, the one with most to spare: the largest `t_delta`; of
     /// these, the largest intervals; of these, the longest times before a sensor fires again. Each need grows by the
-    /// same for all sensors; earlier needs have priority. If `budget` ends before the proof, the result is the best
-    /// found.
+    /// same amount for all sensors; earlier needs have priority. If `budget` ends before the proof, the result is the
+    /// best found.
     ///
     /// # Errors
     /// As for [`shortest`](Self::shortest).

@@ -16,7 +16,7 @@ use crate::{
 
 type Rung = VerifiedSchedule<MAX_SENSORS>;
 
-/// A rung, which rejects crosstalk.
+/// A rung: a schedule that must reject crosstalk.
 fn rung(name: &str, schedule: &Bound<'_, PyAny>, t_delta: Micros) -> PyResult<Rung> {
     let schedule = instance::<Schedule>(name, schedule, "an eeruf.Schedule")?.get().0;
     schedule.verified(&Requirements::new(t_delta)).map_err(Raise::raise)

@@ -41,7 +41,7 @@ const FEW_SENSORS: usize = 12;
 ///     tick_us: the grid of firing times and period, 1 or more.
 ///     neighbours: how many sensors in a row count as neighbours, 1 to 64.
 ///     layout: ``"line"``, ``"ring"``, ``"blocks"`` or pairs of neighbours, as in :meth:`Schedule.verify`.
-///     stale_echo: whether a sensor's own echo from the period before must be rejected too.
+///     stale_echo: whether a sensor's own echo from the previous period must be rejected too.
 ///     budget: how many nodes to visit at most, 1 or more; 50 million by default.
 ///     progress: True for a bar (tqdm if it is installed), or a callable that takes the share done (None: unknown) and
 ///         a text.

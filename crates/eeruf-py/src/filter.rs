@@ -96,7 +96,7 @@ impl EchoFilter {
     /// Args:
     ///     sensor: its index, from 0.
     ///     t_echo_us: the time of its echo after firing in whole microseconds, or None for no echo.
-    ///     expected_change_us: expected change of a good reading from the one before, by the robot's own
+    ///     expected_change_us: expected change of a good reading since the previous one, by the robot's own
     ///         motion: ``-2 v dt / c`` for an object approached at ``v``.
     ///
     /// Returns:

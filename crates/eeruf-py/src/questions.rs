@@ -26,7 +26,7 @@ use crate::{
 ///     tick_us: the grid of firing times and period, 1 or more.
 ///     neighbours: how many sensors in a row count as neighbours, 1 to 64.
 ///     layout: ``"line"``, ``"ring"``, ``"blocks"`` or pairs of neighbours.
-///     stale_echo: whether a sensor's own echo from the period before must be rejected too.
+///     stale_echo: whether a sensor's own echo from the previous period must be rejected too.
 ///     budget: how many nodes to visit at most, 1 or more; 50 million by default.
 ///     refire_us: how soon a sensor may be triggered again, where that is later than its window.
 ///     intervals_us: pairs of sensors with the least time between their firings.
@@ -97,7 +97,7 @@ pub(crate) fn fit<'py>(
 ///     tick_us: the grid of firing times and period, 1 or more.
 ///     neighbours: how many sensors in a row count as neighbours, 1 to 64.
 ///     layout: ``"line"``, ``"ring"``, ``"blocks"`` or pairs of neighbours.
-///     stale_echo: whether a sensor's own echo from the period before must be rejected too.
+///     stale_echo: whether a sensor's own echo from the previous period must be rejected too.
 ///     budget: how many nodes each point may cost, 1 or more; 20,000 by default.
 ///     refire_us: how soon a sensor may be triggered again, where that is later than its window.
 ///     intervals_us: pairs of sensors with the least time between their firings.

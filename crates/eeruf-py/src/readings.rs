@@ -83,7 +83,7 @@ arrays! {
         };
         /// Time when the sound behind ``t_echo_us`` was sent, in seconds: float64.
         emitted_s: |this, py| this.columns.get(py, 11, this.readings.emitted_s.iter().copied());
-        /// The change that odometry expects since the sensor's firing before, in microseconds; 0 without odometry:
+        /// The change that odometry expects since the sensor's previous firing, in microseconds; 0 without odometry:
         /// int32.
         expected_change_us: |this, py| this.columns.get(py, 16, this.readings.expected_change_us.iter().copied());
         /// Returns true if the method accepts the reading, an echo or that nothing is in range: bool.
@@ -114,7 +114,7 @@ arrays! {
         self.readings.sensors
     }
 
-    /// Every path of some reading: a dict of arrays of equal length.
+    /// The paths of all readings: a dict of arrays of equal length.
     ///
     /// ``emitter_robot``, ``emitter``, ``receiver_robot``, ``receiver`` count from 0; ``order`` is the number of
     /// bounces; ``length_m``, ``departure_rad`` and ``arrival_rad`` are in metres and radians of the scene; ``walls``

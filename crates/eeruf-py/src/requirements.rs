@@ -133,7 +133,7 @@ impl<'py> Asked<'py> {
         Ok(spec)
     }
 
-    /// The reading of (13a), (13b); exact by default.
+    /// The interpretation of (13a), (13b); exact by default.
     fn criterion(&self) -> PyResult<Criterion> {
         let criterion = self.get("criterion")?;
         choice("criterion", criterion.as_ref(), &[("exact", Criterion::Exact), ("paper", Criterion::Paper)])

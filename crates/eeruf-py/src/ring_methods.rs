@@ -164,7 +164,7 @@ impl Ring {
     ///
     /// Args:
     ///     now_us: the present, 0 or more.
-    ///     expected_change_us: for each sensor, the expected change of a good reading from the one before, by the
+    ///     expected_change_us: for each sensor, the expected change of a good reading since the previous one, by the
     ///         robot's own motion: ``-2 v dt / c`` for an object approached at ``v``. None for a robot at rest.
     ///
     /// Returns:

@@ -255,7 +255,7 @@ impl Schedule {
     ///     criterion: how to read Eqs. (13a), (13b): ``"exact"``, or as the ``"paper"`` prints them.
     ///     window_us: ``T_wind``, for which a sensor listens: it must not fire again earlier. One for all, or a
     ///         sequence.
-    ///     stale_echo: whether a sensor's own echo from the period before must be rejected too.
+    ///     stale_echo: whether a sensor's own echo from the previous period must be rejected too.
     ///     refire_us: how soon a sensor may be triggered again, where that is later. One for all, or a sequence.
     ///     intervals_us: pairs of sensors with the least time between their firings, whatever the layout says:
     ///         ``[(0, 4, 9000)]``; 0 for none.

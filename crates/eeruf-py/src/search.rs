@@ -168,9 +168,8 @@ impl WaitSearch {
         WaitTables(Exclusive::new("iterator of tables", Walk { search: self.search.clone(), last: None }))
     }
 
-    /// The best table: with the largest smallest interval between neighbours, with the largest ``T_delta``, with the
-    /// smallest longest wait, or with the shortest period for these lags, no longer than the given one. Ctrl-C ends
-    /// the search.
+    /// The best table, by its smallest interval between neighbours, ``T_delta`` (both as large as possible), longest
+    /// wait, or period for these lags, at most the given one (both as short as possible). Ctrl-C ends the search.
     ///
     /// Args:
     ///     objective: ``"interval"``, ``"t_delta"``, ``"waits"`` or ``"period"``.

@@ -14,7 +14,7 @@ const RESTART_NS: i64 = 2_000_000_000;
 pub(crate) struct BoardClock {
     /// The last instant, raw and with its wraps counted.
     last: Option<(Instant, i64)>,
-    /// The least differences between the arrival and the making of a frame, in this stretch and the one before.
+    /// The least differences between the arrival and the making of a frame, in this stretch and the previous one.
     offsets_ns: Option<[i64; 2]>,
     began_us: i64,
 }

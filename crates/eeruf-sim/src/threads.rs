@@ -25,7 +25,7 @@ impl Threads {
         Self { number, pool: Mutex::new(None) }
     }
 
-    /// Returns a separate pool with as many threads.
+    /// Returns a separate pool with the same number of threads.
     #[must_use]
     pub const fn others(&self) -> Self {
         Self::new(self.number)

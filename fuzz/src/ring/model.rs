@@ -22,9 +22,9 @@ pub(super) struct Heard {
     /// Time of the firing.
     fired: u64,
     t_delta: u32,
-    /// True if foreign sound explains this reading and the one before.
+    /// True if foreign sound explains this reading and the previous one.
     ambiguous: bool,
-    /// The change that odometry expects since the one before.
+    /// The change that odometry expects since the previous one.
     expected: i32,
     /// The possible error of the echo.
     off: u32,
@@ -168,7 +168,7 @@ pub(super) struct Model<'s> {
     pub(super) last_sensor: Option<usize>,
     pub(super) paused: bool,
     pub(super) epoch: u32,
-    /// The schedule of the epoch before.
+    /// The schedule of the previous epoch.
     pub(super) before: Option<&'s Schedule<SENSORS>>,
     /// True if no poll was late since the last firing.
     pub(super) on_time: bool,

@@ -91,8 +91,8 @@ pub(crate) fn two_periods(readings: &Readings, robot: u16, sensors: usize, windo
     picture
 }
 
-/// The first even period after the ring has settled in which, with the next one, the most foreign sound is heard, and
-/// none of it believed if possible.
+/// The first even period, after the ring has settled, that together with the next one has the most foreign sound, if
+/// possible none of it believed.
 fn richest_period(readings: &Readings) -> u32 {
     const FROM: u32 = 4;
     const TO: u32 = 204;

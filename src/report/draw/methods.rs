@@ -70,7 +70,7 @@ pub(crate) fn methods_chart(summaries: &[Summary]) -> Picture {
 /// Share of right firings below which a sensor is blind.
 const BLIND: f64 = 0.05;
 
-/// One line for each method, one cell for each sensor: the share of its firings that are right, and which are blind.
+/// One line for each method, one cell for each sensor: the share of right firings, with blind sensors marked.
 pub(crate) fn blind_sensors(lanes: &[(Method, Vec<f64>)]) -> Picture {
     let sensors = lanes.iter().map(|(_, shares)| shares.len()).max().unwrap_or(0);
     let cell = ((WIDTH - LEFT) / sensors.max(1) as f64).min(90.0);

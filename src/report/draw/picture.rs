@@ -1,4 +1,4 @@
-//! A picture as a list of shapes in pixels, saved as SVG or PNG by the file's ending.
+//! A picture as a list of shapes in pixels, saved as SVG or PNG by the file's extension.
 //!
 //! Plotters' two backends draw the shapes: SVG as they are, bitmaps four times as large and then halved, which smooths
 //! edges and leaves two pixels for each of the picture's. Text in bitmaps is set in a part of DejaVu Sans (see

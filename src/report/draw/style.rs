@@ -27,7 +27,7 @@ pub(crate) const SENSORS: [RGBColor; 10] = [
     RGBColor(0x5a, 0x60, 0x6b),
 ];
 
-/// A sensor's colour; every tenth has the same.
+/// A sensor's colour; colours repeat after ten sensors.
 pub(crate) fn sensor_colour(sensor: usize) -> RGBAColor {
     SENSORS[sensor % SENSORS.len()].to_rgba()
 }

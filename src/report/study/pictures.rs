@@ -14,7 +14,7 @@ const MOST_PATHS: usize = 24;
 /// Number of readings of one sensor that are drawn.
 const SHOWN_READINGS: usize = 70;
 
-/// Draws `scene`, `timing`, `readings`, `methods` and `blind` with this ending into a folder, and returns their number.
+/// Draws `scene`, `timing`, `readings`, `methods` and `blind` with this extension; returns their number.
 pub(crate) fn pictures(folder: &Path, ending: &str, world: &World, study: &Study) -> Result<usize, InputError> {
     let file = |name: &str| folder.join(name).with_extension(ending);
     comparison(study, &file("methods"))?;

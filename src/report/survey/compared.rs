@@ -20,8 +20,8 @@ pub(crate) struct Compared {
     pub(crate) loud_pairs_found: usize,
     /// Number of pairs wrongly reported as hearing each other: they do not, even 6 dB louder.
     pub(crate) pairs_wrong: usize,
-    /// Number of paths between different sensors that the survey found, and of those that no sound takes, even 6 dB
-    /// louder.
+    /// Number of paths between different sensors that the survey found, and the number of them that no sound takes,
+    /// even 6 dB louder.
     pub(crate) paths: usize,
     pub(crate) paths_wrong: usize,
 }

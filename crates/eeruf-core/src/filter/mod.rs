@@ -1,4 +1,4 @@
-//! The filter: a reading counts only if it is near-identical to the one before (Eq. 11).
+//! The filter: a reading counts only if it is near-identical to the previous one (Eq. 11).
 //!
 //! ```text
 //! |T_i - T_(i-1)| <= T_delta      (11)

@@ -45,7 +45,7 @@ struct Known<const E: usize> {
 pub struct Belief<const K: usize, const E: usize = 1> {
     settings: BeliefSettings,
     motion: Motion,
-    /// True if the robot moved at the last reading, or moves by the last report.
+    /// True if the robot moved at the last reading or, according to the last report, moves now.
     moves: bool,
     /// The quiet that the last reading calls for.
     quiet: Quiet,
@@ -82,7 +82,7 @@ impl<const K: usize, const E: usize> Belief<K, E> {
         }
     }
 
-    /// Returns how much a good reading may have changed, and adds it to the change since the belief.
+    /// Returns how much a good reading may have changed, and adds it to the change since the belief was confirmed.
     fn grow(&mut self, heard: &Heard<'_>) -> Micros {
         let (rate, recent) = (self.motion.rate(heard.fired), self.motion.recent(heard.fired));
         self.set_moves(rate.moves());

@@ -114,7 +114,7 @@ pub struct MOfN<const K: usize, const N: usize> {
     n: u8,
     t_delta: Micros,
     motion: Motion,
-    /// True if the robot moved at the last reading, or moves by the last report.
+    /// True if the robot moved at the last reading or, according to the last report, moves now.
     moves: bool,
     /// The quiet that the last reading calls for.
     quiet: Quiet,

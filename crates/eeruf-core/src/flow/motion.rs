@@ -19,8 +19,8 @@ pub(super) struct Rate(u16);
 impl Rate {
     pub(super) const STANDING: Self = Self(0);
     /// The rate at a speed `v` in mm/s, rounded up: `2 v / 331 * 1.024 * 16 * 1.06`, at most 4,095. Robots meet no
-    /// sound slower than 331 m/s. The extra 6 % covers intervals between sendings, which at 3.6 m/s exceed those
-    /// between hearings by that much.
+    /// sound slower than 331 m/s. The extra 6 % covers intervals between emissions, which at 3.6 m/s are longer by that
+    /// much than intervals between receptions.
     const fn of(speed_mm_s: u32) -> Self {
         // A Cortex-M0 divides by a power of two without a call.
         let speed = if speed_mm_s > 39_000 { 39_000 } else { speed_mm_s };

@@ -60,7 +60,7 @@ pub trait Plan {
     fn deadline(&self) -> Instant;
     /// The sensor that fires next and the phase of its wait; `None` if the period ends next.
     fn next_firing(&self) -> Option<(u8, Phase)>;
-    /// The next firings in order, if none is late: all that are decided, at least the next one of this period.
+    /// The next firings in order, assuming that none is late: all that are decided, at least this period's next one.
     fn upcoming(&self) -> impl Iterator<Item = Upcoming> {
         let due = self.deadline();
         self.next_firing().map(|(sensor, phase)| Upcoming { sensor, phase, due }).into_iter()

@@ -25,7 +25,7 @@ use crate::time::{Instant, Micros};
 /// T_wait`.
 pub type ImmediateRefiring<'s, const K: usize, const M: usize = 2> = Refiring<&'s Schedule<K, M>, K, M>;
 
-/// [`ImmediateRefiring`] with any pointer `T` to a [`Schedule`]: an `Arc` owns it.
+/// [`ImmediateRefiring`] over any pointer `T` to a [`Schedule`]: with an `Arc` it owns the schedule.
 #[derive(Clone, Debug)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Refiring<T, const K: usize, const M: usize = 2> {

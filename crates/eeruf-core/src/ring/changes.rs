@@ -43,7 +43,7 @@ where
     /// which the plan holds from then on.
     ///
     /// # Errors
-    /// Those of [`change_schedule`](Ring::change_schedule); [`RingError::Window`] if a sensor would fire too soon.
+    /// As for [`change_schedule`](Ring::change_schedule); [`RingError::Window`] if a sensor would fire too soon.
     pub fn change_to(&mut self, schedule: T, own_limits: U) -> Result<(), RingError> {
         // Checked as if the ring began with that schedule.
         let begun = TableFiring::holding(schedule.clone(), own_limits, Instant::from_micros(0));

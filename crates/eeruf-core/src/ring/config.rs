@@ -16,8 +16,8 @@ pub enum Silence {
     /// A fault, [`Unanswered`](crate::ReadingKind::Unanswered), for drivers whose sensors show that they listen, for
     /// instance by a line that rises.
     NeedsAnswer,
-    /// Silence counts as one with a witness: [`Clear`](crate::ReadingKind::Clear) once repeated. For simulations, and
-    /// sensors that cannot fail silently: a cut wire counts as free space.
+    /// Silence counts as if the sensor had shown that it listened: [`Clear`](crate::ReadingKind::Clear) once repeated.
+    /// For simulations, and sensors that cannot fail silently: a cut wire counts as free space.
     Trusted,
 }
 

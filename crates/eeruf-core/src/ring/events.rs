@@ -54,7 +54,7 @@ pub struct PeriodStats {
     pub period: u32,
     /// The phase of the period.
     pub phase: Phase,
-    /// The readings emitted since the period before ended, by kind.
+    /// The readings emitted since the previous period ended, by kind.
     pub tally: Tally<u8>,
     /// Greatest lateness of the period's firings and its end, from due to polled, at most 65,535 us. If a reading
     /// brings a firing forward, lateness counts from the poll that returned the reading.

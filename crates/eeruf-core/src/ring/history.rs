@@ -136,7 +136,7 @@ pub(super) struct Pair {
 
 impl Pair {
     /// Returns true if sound of these firings explains both readings. `own` marks the receiver's own firings: its last
-    /// does not count for the second reading, nor the one at this place for the first.
+    /// firing does not count for the second reading, nor the firing with this index for the first.
     // Out of line, where it has all registers of a Cortex-M0 to itself.
     #[inline(never)]
     pub(super) fn explains<const H: usize>(&self, firings: &Firings<H>, own: Option<u8>) -> bool {

@@ -36,7 +36,7 @@ pub use events::{PeriodStats, Reading, RingEvent};
 /// A ring of up to `K` sensors: the [`Plan`] `P` decides when each fires, and the [`Judge`] `J` which readings to
 /// accept. `E` is the number of echoes that a sensor reports per firing.
 ///
-/// With an [`EchoFilter`] a reading is accepted if it is near-identical to the one before (Eq. 11) and no firing
+/// With an [`EchoFilter`] a reading is accepted if it is near-identical to the previous one (Eq. 11) and no firing
 /// explains both as crosstalk; if one does, the reading is [`Ambiguous`](ReadingKind::Ambiguous). The ring judges by
 /// actual firings, not by the plan: late polls, pauses, restarts, changes of schedule and sensors that are disabled or
 /// enabled may cost readings, but no single path of foreign sound that is audible for no longer than
@@ -109,7 +109,7 @@ pub struct Ring<P, J, const K: usize, const E: usize = 1, const H: usize = 4> {
 pub type ScheduledRing<'s, const K: usize, const E: usize = 1, U = ()> =
     Ring<ScheduledFiring<'s, K, 2, U>, EchoFilter<K, E>, K, E>;
 
-/// A [`Ring`] that accepts each reading that agrees with the one before, even if foreign sound explains both: a
+/// A [`Ring`] that accepts each reading that agrees with the previous one, even if foreign sound explains both: a
 /// baseline. It accepts crosstalk that repeats, as with constant waits.
 pub type AgreementRing<P, const K: usize, const E: usize = 1> = Ring<P, Agreement<EchoFilter<K, E>>, K, E, 1>;
 
@@ -194,7 +194,7 @@ impl<P: Plan, const K: usize, const E: usize, const H: usize> Ring<P, EchoFilter
 }
 
 impl<P: Plan, const K: usize, const E: usize> AgreementRing<P, K, E> {
-    /// A baseline: a ring that accepts every reading that agrees with the one before.
+    /// A baseline: a ring that accepts every reading that agrees with the previous one.
     ///
     /// # Errors
     /// As for [`Ring::remembering`].
@@ -208,7 +208,7 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     /// Initial state, copied from flash: an array made at run time would first be built on the stack.
     const SENSORS: [Sensor<E, H>; K] = [Sensor::new(Instant::from_micros(0)); K];
 
-    /// A ring in which nothing has fired. It assumes silence before: the caller must wait until earlier sound has died.
+    /// A ring in which nothing has fired. It assumes silence: the caller must wait until earlier sound has died away.
     #[inline(always)]
     pub(crate) const fn begin(plan: P, judge: J, listening: Listening, proven: bool, now: Instant) -> Self {
         let mut ring = Self {

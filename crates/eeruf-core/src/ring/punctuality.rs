@@ -4,10 +4,10 @@
 //! follow, so the time between two firings is off by at most the sum of lateness in between; a verified schedule
 //! tolerates some lateness.
 
-/// Number of ends of periods for which an irregularity is remembered: the first of three readings, which a filter over
-/// three may compare, was fired three periods ago, and sound is audible for two.
+/// Number of period ends for which an irregularity is remembered. A filter may compare three readings, the first of
+/// which was fired three periods ago, and sound is audible for two periods.
 const WATCHED: u8 = 6;
-/// Marker of an unproven timetable, with which each reading is checked.
+/// Marker of an unproven timetable, under which each reading is checked.
 const ALWAYS: u8 = u8::MAX;
 
 /// Lateness of firings, and for how long it still matters.
@@ -15,7 +15,7 @@ const ALWAYS: u8 = u8::MAX;
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[repr(C)]
 pub(super) struct Punctuality {
-    /// Number of further ends of periods for which something irregular can be heard; 0 while all is on time.
+    /// Number of period ends until nothing irregular can be heard; 0 while all is on time.
     watched: u8,
     /// Greatest lateness of a step in this period.
     latest: u16,

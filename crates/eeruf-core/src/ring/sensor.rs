@@ -140,7 +140,7 @@ impl<const E: usize, const H: usize> Sensor<E, H> {
         (self.flags, self.uncertain) = (OUTSIDE, [0; 3]);
     }
 
-    /// Stores an edge `at` an instant, at most `off` sooner or later.
+    /// Stores an edge `at` an instant, which may be wrong by `off` either way.
     pub(super) fn echo(&mut self, at: Instant, off: Micros, blanking: Micros, window: Micros) -> Noted {
         if off > MOST {
             return self.wide_echo(at, off, blanking, window);

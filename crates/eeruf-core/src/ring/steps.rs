@@ -284,7 +284,7 @@ const UNKNOWN: Explained = Explained::By(Explanation::History);
 /// The remembered firings of all sensors, for the reading of one.
 struct Memory<'r, P, const E: usize, const H: usize> {
     receiver: u8,
-    /// Uncertainty of the receiver's echoes: of its last firing, of the one before, and of all earlier ones.
+    /// Uncertainty of the receiver's echoes: of its last firing, of the previous one, and of all earlier ones.
     uncertain: [u8; 3],
     sensors: &'r [Sensor<E, H>],
     plan: &'r P,

@@ -55,7 +55,7 @@ pub enum ScheduleError {
     },
     /// A ladder of schedules has no rung.
     NoRung,
-    /// A rung of a ladder is not slower than the one before.
+    /// A rung of a ladder is not slower than the previous one.
     RungOrder {
         /// The rung.
         rung: usize,

@@ -60,7 +60,7 @@ pub struct Schedule<const K: usize, const M: usize = 2> {
 struct Firings<const K: usize> {
     /// The sensors by firing time; then 255.
     order: [u8; K],
-    /// Time before each firing, since the one before or the start of the period; then `after_last`.
+    /// Time from the previous firing, or from the start of the period, to each firing; then `after_last`.
     gap: [Micros; K],
     /// Time from the last firing to the end of the period.
     after_last: Micros,

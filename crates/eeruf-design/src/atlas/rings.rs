@@ -44,7 +44,7 @@ const INTERVAL: u32 = 15;
 /// times a second; Polaroid's and others that see 11 m.
 const WINDOWS: [u32; 5] = [25, 30, 40, 50, 65];
 
-/// All rings of the atlas, in order: those of 2 to 32 sensors.
+/// All rings of the atlas in order, of 2 to 32 sensors.
 #[must_use]
 pub fn all_rings() -> Vec<Ring> {
     let mut rings = Vec::new();

@@ -33,7 +33,7 @@ pub struct RmtLine<const N: usize> {
     next: usize,
     /// Time when the next level begins.
     at: Instant,
-    /// The level before.
+    /// The previous level.
     was_high: bool,
 }
 

@@ -8,7 +8,7 @@ use crate::modules::{Module, US_100};
 
 /// The command that asks for a distance.
 const RANGE: u8 = 0x55;
-/// Largest number of bytes taken from a line at once, an arbitrary choice: no answer has as many.
+/// Largest number of bytes taken from a line at once, an arbitrary choice: every answer is shorter.
 const MOST_BYTES: usize = 32;
 /// Largest number of errors skipped when a line is cleared, an arbitrary choice.
 const MOST_ERRORS: usize = 8;

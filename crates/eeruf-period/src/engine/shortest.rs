@@ -50,7 +50,7 @@ pub fn shortest(problem: &Problem, budget: u64, go_on: &mut dyn FnMut(&SoFar) ->
 /// The longest period that is searched, in ticks: sums of a few such times fit into a bound. A certificate takes at
 /// most [`MAX_NUMBER`](crate::engine::MAX_NUMBER).
 pub const MAX_TICKS: u32 = 1 << 24;
-/// The nodes of the first round for each sensor.
+/// Number of nodes per sensor in the first round.
 const EFFORT: u64 = 16;
 /// Number of rounds that start at the bound while nothing is found.
 const GALLOPS: u32 = 2;

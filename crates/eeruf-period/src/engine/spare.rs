@@ -1,5 +1,5 @@
 //! The schedule with most to spare among those of one period: larger separations, then larger gaps, then longer
-//! windows, each increased by the same for all sensors.
+//! windows, each increased by the same amount for all sensors.
 
 use crate::engine::problem::Problem;
 use crate::engine::search::{Decided, FiringTimes, Search};

@@ -14,7 +14,7 @@ pub(crate) struct State {
     pub(crate) below: Vec<u64>,
     /// Two sensors, the first of which fires before the second in at least one phase.
     pub(crate) reverse: Option<(usize, usize)>,
-    /// True if the rules conclude more than those of a certificate.
+    /// True if the rules may conclude more than a certificate's rules.
     pub(crate) goes_further: bool,
     /// The sensors that fire first, if branchings follow the order of time.
     pub(crate) turns: Option<Turns>,

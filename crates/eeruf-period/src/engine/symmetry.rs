@@ -83,8 +83,8 @@ impl Assumptions {
         Ok(root)
     }
 
-    /// The state of the root for branchings in the order of time: the first sensor of each family fires first of it in
-    /// phase a, and the first sensor of all no later than any of its family in phase b.
+    /// The state of the root for branchings in the order of time: in phase a the first sensor of each family fires
+    /// before the rest of the family, and in phase b the first sensor of all fires no later than the rest of its own.
     pub(crate) fn root_in_time(&self, merged: &Merged, bound: u32) -> Result<State, Refuted> {
         let mut root = State::new(merged, bound as i32)?;
         for (number, family) in self.families.iter().enumerate() {

@@ -45,7 +45,7 @@ pub(super) fn numbers(first: u64, seeds: u64) -> Result<Range<u64>, ExperimentEr
     Ok(first..end)
 }
 
-/// Checks that there is a method, and none twice.
+/// Checks that there is a method, and that no method occurs twice.
 pub(super) fn distinct(methods: &[Entry]) -> Result<(), ExperimentError> {
     let mut names: Vec<_> = methods.iter().map(Entry::name).collect();
     names.sort_unstable();

@@ -25,7 +25,7 @@ use eeruf_core::{
 /// assert_eq!(BackAndForth.plan(1).unwrap().firings[7], (Micros::ZERO, 7));
 /// ```
 pub trait FiringMethod: Send {
-    /// Plans a period of the ring. Periods are counted from 0, and each begins when the one before has ended.
+    /// Plans a period of the ring. Periods are counted from 0, and each begins when the previous one has ended.
     ///
     /// # Errors
     /// An error ends the simulation, with [`SimulationError::Own`](crate::SimulationError::Own).

@@ -34,23 +34,23 @@ methods! {
     Simultaneous = "simultaneous" { firing: Way::by_table(schedules::together), judge: EveryEcho, }
     /// One by one, each sensor listening for the whole window before the next one fires. Every echo is believed.
     Sequential = "sequential" { firing: Way::by_table(schedules::one_by_one), judge: EveryEcho, }
-    /// As sequential, but an echo is believed if one of the sensor's two readings before agrees with it: two of three
-    /// votes.
+    /// Like sequential, but an echo is believed if one of the sensor's two previous readings agrees with it: two of
+    /// three votes.
     SequentialVotes = "sequential_votes" { firing: Way::by_table(schedules::one_by_one), judge: TwoOfThree, }
-    /// As sequential, but the median of a sensor's last three readings is believed.
+    /// Like sequential, but the median of a sensor's last three readings is believed.
     SequentialMedian = "sequential_median" {
         firing: Way::by_table(schedules::one_by_one), judge: JudgeKind::Median,
     }
-    /// As sequential, but sensors as far apart as the ring's `neighbours` fire together. Every echo is believed.
+    /// Like sequential, but sensors as far apart as the ring's `neighbours` fire together. Every echo is believed.
     FarGroups = "far_groups" { firing: Way::by_table(schedules::far_groups), judge: EveryEcho, }
     /// The conventional lags plus a wait redrawn for each sensor in each period, from as wide a range as the paper's
     /// waits span. Consecutive readings are compared.
     Dither = "dither" { firing: dither::WAY, judge: Agreement, }
     /// Constant lags (Table I-a): neighbours fire `T_p / n` apart, every period alike. Every echo is believed.
     Conventional = "conventional" { firing: Way::by_table(schedules::conventional), judge: EveryEcho, }
-    /// As conventional, but consecutive readings are compared: the negative control, the filter without alternation.
+    /// Like conventional, but consecutive readings are compared: the negative control, the filter without alternation.
     Comparison = "comparison" { firing: Way::by_table(schedules::conventional), judge: Agreement, }
-    /// As conventional, but the median of a sensor's last readings is believed.
+    /// Like conventional, but the median of a sensor's last readings is believed.
     Median = "median" { firing: Way::by_table(schedules::conventional), judge: JudgeKind::Median, }
     /// Immediate refiring with alternating waits (Figs. 2a, 2b): those of the paper's table, each longer by the robot's
     /// `min_refire`. Consecutive readings are compared.
@@ -64,8 +64,8 @@ methods! {
     /// Like [`eeruf`](Self::Eeruf), moving along a ladder of scaled schedules as the rejection rate asks for (end of
     /// Sec. 3.1).
     Adaptive = "adaptive" { adapts: true, }
-    /// Flow: one sensor after the other, each with as much quiet around its firing as it has needed and dice in every
-    /// gap; an echo is believed that fits what is believed, or that two readings say and nothing foreign explains
+    /// Flow: one sensor after the other, with as much quiet around each firing as it has needed, and a random time in
+    /// every gap; an echo is believed if it fits the belief, or if two readings agree and nothing foreign explains both
     /// ([`InTurn`](eeruf_core::flow::InTurn), [`Belief`](eeruf_core::flow::Belief)).
     Flow = "flow" { firing: flow::WAY, judge: Belief, }
     /// Like [`eeruf`](Self::Eeruf), with sensors that report up to eight echoes of a firing: the earliest that repeats
@@ -75,10 +75,10 @@ methods! {
     AdaptiveMultiEcho = "adaptive_multi_echo" { echoes: MAX_ECHOES, adapts: true, on_demand: true, }
     /// Like [`flow`](Self::Flow), with sensors that report up to eight echoes of a firing.
     FlowMultiEcho = "flow_multi_echo" { firing: flow::WAY, judge: Belief, echoes: MAX_ECHOES, on_demand: true, }
-    /// One by one, each as soon as the one before has answered or was given up, as the loop of a sketch or a ping timer
-    /// fires; see [`Sketch`](crate::Sketch). Every echo is believed unless the sketch says otherwise.
+    /// One by one, each as soon as the previous one has answered or timed out, like the loop of a sketch or a ping
+    /// timer; see [`Sketch`](crate::Sketch). Every echo is believed unless the sketch says otherwise.
     InTurn = "in_turn" { firing: sketch::way(sketch::in_turn), judge: AsSketched, }
-    /// Arrays side by side, each as [`in_turn`](Self::InTurn).
+    /// Arrays side by side, each like [`in_turn`](Self::InTurn).
     Arrays = "arrays" { firing: sketch::way(sketch::arrays), judge: AsSketched, }
     /// Like [`in_turn`](Self::InTurn), with groups of sensors that fire together.
     Groups = "groups" { firing: sketch::way(sketch::groups), judge: AsSketched, }
@@ -86,8 +86,8 @@ methods! {
     SyncLine = "sync_line" { firing: sketch::way(sketch::sync_line), judge: AsSketched, }
     /// Modules that fire themselves, each by a clock of its own.
     FreeRunning = "free_running" { firing: sketch::way(sketch::free_running), judge: AsSketched, }
-    /// One by one as a loop that blocks: fire, wait for the echo or for 38 ms, then 10 ms, and the next. Every echo is
-    /// believed.
+    /// One by one in a blocking loop: fire, wait for the echo or for 38 ms, pause for 10 ms, go on to the next. Every
+    /// echo is believed.
     Blocking = "blocking" { firing: sketch::way(sketch::blocking), judge: EveryEcho, on_demand: true, }
     /// By a table of any number of phases, the robot's own schedule unless the sketch has one.
     Table = "table" { firing: sketch::TABLE, judge: AsSketched, }

@@ -32,7 +32,7 @@ pub(crate) trait RingRunner: Send {
     fn stands_for(&self, sensor: u8) -> u8;
     /// Reports the robot's speed and rate of turn.
     fn moving(&mut self, _speed_mm_s: u32, _turn_mrad_s: u32, _now: Instant) {}
-    /// Changes to another schedule with as many sensors at the end of the present period.
+    /// Changes to another schedule, for the same number of sensors, at the end of the present period.
     fn change_schedule(&mut self, _schedule: &AnySchedule) -> Result<(), ChangeError> {
         Err(ChangeError::Fixed)
     }

@@ -9,7 +9,7 @@ pub(super) fn together(robot: &Robot, _: Option<&AnySchedule>) -> Result<AnySche
     constant(robot.period, &vec![Micros::ZERO; robot.sensors.len()])
 }
 
-/// Makes a schedule that fires one sensor after the other, each when the sound of the one before has faded.
+/// Makes a schedule that fires one sensor after the other, each when the sound of the previous one has faded.
 pub(super) fn one_by_one(robot: &Robot, _: Option<&AnySchedule>) -> Result<AnySchedule, ScheduleError> {
     in_turns(robot, robot.sensors.len())
 }
@@ -31,7 +31,7 @@ pub(super) fn own(robot: &Robot, _: Option<&AnySchedule>) -> Result<AnySchedule,
     schedule.map_or_else(|| table_i_d_for(sensors.len(), period, neighbours), Ok)
 }
 
-/// Returns the best known schedule, if it has as many sensors.
+/// Returns the best known schedule, if it has the ring's number of sensors.
 pub(super) fn best(robot: &Robot, best: Option<&AnySchedule>) -> Result<AnySchedule, ScheduleError> {
     match best {
         Some(best) if best.sensors() == robot.sensors.len() => Ok(*best),

@@ -20,7 +20,7 @@ pub(super) const fn way(ring: fn(&RingStart<'_>) -> Started) -> Way {
 /// A way that fires by a table of any number of phases.
 pub(super) const TABLE: Way = Way { ring: table, refire: |robot, _, _| robot.window, ..Way::by_table(schedules::own) };
 
-/// Fires one sensor after the other, each as soon as the one before has answered or timed out.
+/// Fires one sensor after the other, each as soon as the previous one has answered or timed out.
 pub(super) fn in_turn(start: &RingStart<'_>) -> Started {
     lanes(start, vec![singly(0..start.robot.sensors.len() as u8)])
 }
@@ -149,7 +149,7 @@ impl FiringMethod for ByTable {
     }
 }
 
-/// Sets of sensors that take turns: the next set fires when every sensor of the set before has ended.
+/// Sets of sensors that take turns: the next set fires when every sensor of the current one has ended.
 #[derive(Clone, Debug)]
 struct Lane {
     sets: Vec<Vec<u8>>,

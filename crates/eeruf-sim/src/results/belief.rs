@@ -76,7 +76,7 @@ impl Readings {
 }
 
 impl Believed {
-    /// Returns the share in `of` to which the belief counts, with this reference.
+    /// Returns the share in `of` to which the time with this belief belongs, given the reference.
     fn state<'b>(&self, reference_us: f64, tolerance_us: f64, of: &'b mut BeliefShares) -> &'b mut f64 {
         let off_us = self.t_echo_us - reference_us;
         if off_us.abs() <= tolerance_us || (self.t_echo_us.is_nan() && reference_us.is_nan()) {

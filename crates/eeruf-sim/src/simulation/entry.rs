@@ -69,7 +69,7 @@ impl Entry {
         Self { flow: Some(flow), ..self }
     }
 
-    /// Sets the robot's own schedule, for as many sensors.
+    /// Sets the robot's own schedule, for the same number of sensors.
     #[must_use]
     pub fn with_schedule(self, schedule: AnySchedule) -> Self {
         Self { schedule: Some(schedule), ..self }

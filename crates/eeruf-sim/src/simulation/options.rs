@@ -10,8 +10,8 @@ pub struct Options {
     pub periods: u32,
     /// A seed that replaces the world's.
     pub seed: Option<u64>,
-    /// Schedule of [`Method::EerufBest`](crate::Method::EerufBest), for every robot with as many sensors. Other robots,
-    /// and all with `None`, use [`Method::Eeruf`](crate::Method::Eeruf).
+    /// Schedule of [`Method::EerufBest`](crate::Method::EerufBest), for every robot with its number of sensors. Other
+    /// robots, and all with `None`, use [`Method::Eeruf`](crate::Method::Eeruf).
     pub best: Option<AnySchedule>,
     /// Number of readings of which [`Method::Median`](crate::Method::Median) takes the median, 1 to 15. The default is
     /// 3.

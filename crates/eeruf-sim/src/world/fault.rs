@@ -1,4 +1,4 @@
-//! Faults in a world for a time: of sensors, wires and lines, of clocks and tables, and by people and doors.
+//! Temporary faults in a world: of sensors, wires, lines, clocks and tables; and people and doors in the way.
 
 use eeruf_files::AnySchedule;
 use serde::{Deserialize, Deserializer, Serialize};
@@ -10,7 +10,7 @@ use crate::{
     scene::{Faces, Pole, Scene, Wall},
 };
 
-/// Latest begin or end of a fault, in seconds, unless it never ends.
+/// Latest start or end of a fault, in seconds, unless it never ends.
 const LATEST_S: f64 = 1e9;
 
 /// A fault from one time to another.
@@ -190,7 +190,7 @@ pub struct LineEdge {
 }
 
 impl Fault {
-    /// Makes a fault from the beginning on, for all sensors of the first robot, without an end.
+    /// Makes a fault that lasts from the beginning without an end, for all sensors of the first robot.
     pub const fn new(kind: FaultKind) -> Self {
         Self { kind, robot: 0, sensors: vec![], from_s: 0.0, to_s: f64::INFINITY }
     }
@@ -201,7 +201,7 @@ impl Fault {
         Self { sensors: sensors.to_vec(), ..self }
     }
 
-    /// Returns the fault with this begin and end, in seconds.
+    /// Returns the fault with this start and end, in seconds.
     #[must_use]
     pub fn between(self, from_s: f64, to_s: f64) -> Self {
         Self { from_s, to_s, ..self }

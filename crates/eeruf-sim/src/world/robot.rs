@@ -61,7 +61,7 @@ pub struct Robot {
     pub t_delta: Micros,
     /// `T_wind`: the time for which a sensor listens. The default is 36 ms, for 6.2 m.
     pub window: Micros,
-    /// Deaf time of a sensor after it has fired; the shortest if they differ.
+    /// Deaf time of a sensor after it has fired; the shortest if sensors differ.
     pub blanking: Micros,
     /// Deaf time of each sensor, if they differ. Empty by default.
     pub blankings: Vec<Micros>,

@@ -11,7 +11,7 @@ use super::ways::Family;
 
 /// Largest rate of false stops, per minute, at which ways are compared.
 pub const ONE_A_MINUTE: f64 = 1.0;
-/// With this many rooms or more, a difference above the share below is not a draw.
+/// Number of rooms from which on a difference above [`NO_DRAW`] is not a draw.
 const MANY_ROOMS: usize = 400;
 const NO_DRAW: f64 = 0.2;
 
@@ -27,7 +27,7 @@ pub struct Point {
 /// The setting at which a family is used under a condition, chosen in rooms that are not reported.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Operating {
-    /// The least mean time until a thing is seen with no more false stops than asked for.
+    /// The setting with the least mean time until a thing is seen, of those with no more false stops than asked for.
     At(Point),
     /// No setting has few enough false stops; this setting has the fewest.
     None(Point),
@@ -46,7 +46,7 @@ impl Operating {
 pub struct Cell {
     /// Number of things.
     pub things: usize,
-    /// The times in which half of the things, and nine of ten, are seen, in ms.
+    /// The times in which 50 % and 90 % of the things are seen, in ms.
     pub t50_t90_ms: [f64; 2],
     /// The time in which 95 % of the things are seen, in ms; infinite if fewer are.
     pub t95_ms: Estimate,
@@ -77,7 +77,7 @@ impl Under {
         self.sights[way].as_ref().map_or(&[], |by_setting| &by_setting[index])
     }
 
-    /// Returns true if the ring can be fired so. Only one by one has a median.
+    /// Returns true if the ring can be fired this way. Only ways of one by one use the median.
     fn fires(&self, measured: &Measured, Point { way, setting }: Point) -> bool {
         let fits = setting != Setting::Median || measured.ways[way].family == Family::OneByOne;
         fits && self.sights[way].is_ok()
@@ -90,8 +90,8 @@ impl Under {
     }
 
     /// The point at which a group is used with at most this many false stops a minute. For each way it is the most
-    /// eager setting if that has few enough, else the quickest setting that has; among the ways it is the quickest, by
-    /// the mean time until a thing is seen. `None` if the ring cannot be fired by any of them.
+    /// eager setting if that has few enough, else the quickest of those that do; of these it is the quickest, by the
+    /// mean time until a thing is seen. `None` if no way can fire the ring.
     pub fn operating(&self, measured: &Measured, group: &[Point], most_per_min: f64) -> Option<Operating> {
         let points = group.iter().filter(|&&point| self.fires(measured, point));
         let figures: Vec<_> = points.map(|&point| (point, self.mean_and_rate(point))).collect();

@@ -41,7 +41,7 @@ pub struct MeasureAsked {
 pub struct Place {
     /// The room's kind, or the name of its group, and its number.
     pub room: (String, u64),
-    /// The thing's kind, its sensor and distance in metres; none where none had room that its sensor reads.
+    /// The thing's kind, its sensor and distance in metres; `None` if no thing fitted that its sensor could read.
     pub thing: Option<(ThingKind, usize, f64)>,
     /// Counts of the things drawn.
     pub draws: Draws,
@@ -73,9 +73,9 @@ pub struct Measured {
 }
 
 impl MeasureAsked {
-    /// The rooms under a condition for a robot of this radius, each with its group's name and what it is random by.
+    /// The rooms under a condition for a robot of this radius, each with its group's name and its random key.
     fn rooms(&self, condition: Condition, radius_m: f64) -> Vec<(String, u64, RoomPlan)> {
-        /// The key of the caller's rooms, beside those of the kinds.
+        /// The key of the caller's rooms, next to the keys of the kinds.
         const OWN: u64 = 20;
         if self.own.is_empty() {
             let of_set = condition.rooms(self.first, self.places).into_iter();
@@ -103,7 +103,7 @@ impl Under {
         names.into_iter().map(mean).collect()
     }
 
-    /// The share of things that had room but are not read by the sensor before which they are: the module's blindness.
+    /// The share of fitting things that the sensor facing them does not read: the module's blindness.
     pub fn unread(&self) -> f64 {
         let sum = |of: fn(&Draws) -> u32| self.places.iter().map(|place| f64::from(of(&place.draws))).sum::<f64>();
         sum(|draws| draws.unread) / sum(|draws| draws.fitted).max(1.0)
@@ -114,7 +114,8 @@ impl Under {
 /// 0 to 1; if it returns `false`, the measurement stops. The result does not depend on the number of threads.
 ///
 /// # Errors
-/// [`ExperimentError`] for no ways, rooms or conditions, for a room too small for the robot, and if it was stopped.
+/// [`ExperimentError`] for no ways, rooms or conditions, for a room too small for the robot, and if
+/// `keep_going` stopped it.
 pub fn measure(
     ways: &[(RoomWay, Option<Control>)],
     asked: &MeasureAsked,
@@ -194,7 +195,7 @@ impl Trial {
 /// all cores.
 ///
 /// # Errors
-/// [`ExperimentError`] for no robot or trials, for a scene without room for the robots, and if it was stopped.
+/// [`ExperimentError`] for no robot or trials, for a scene without room for the robots, and if `keep_going` stopped it.
 pub fn measure_in_scene(
     world: &World,
     methods: &[(Family, Method)],

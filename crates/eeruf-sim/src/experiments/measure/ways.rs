@@ -51,7 +51,7 @@ pub struct RoomWay {
     pub name: &'static str,
     /// The method.
     pub method: Method,
-    /// The robot as it fires that way; all know the robot's motion.
+    /// The robot, set up to fire that way; in every way its ring knows its motion.
     pub robot: Robot,
     /// Settings of the method.
     pub options: Options,
@@ -61,8 +61,8 @@ impl RoomWay {
     /// The ways for a ring, one by one first. All listen for the robot's window, flow for no longer than it
     /// [reaches](Robot::reach).
     ///
-    /// `schedule` is a schedule of two phases for it, the shortest; where there is none, there is no way of two phases.
-    /// `robot.period` is used by none of them.
+    /// `schedule` is a schedule of two phases for it, the shortest; without one, there is no way of two phases. No way
+    /// uses `robot.period`.
     pub fn all(robot: &Robot, schedule: Option<&AnySchedule>) -> Vec<Self> {
         let way = |family, name, method, period: Micros| Self {
             family,
@@ -123,7 +123,7 @@ impl RoomWay {
     }
 }
 
-/// Returns the robot with the other gain: the steps of the chip where it is constant, constant where it grows.
+/// Returns the robot with the other gain: the chip's steps if its gain is constant, a constant gain if it grows.
 pub fn with_other_gain(robot: &Robot) -> Robot {
     let other = match robot.module_of(0).gain {
         Gain::Constant if robot.module_of(0).frequency_hz > 45_000 => GainProfile::Polaroid6500,

@@ -20,7 +20,7 @@ impl RoomGroup {
         Self { name: kind.to_string(), rooms }
     }
 
-    /// The room of a world, for a ring in the place of the world's first robot, with as much free way; `None` for a
+    /// The room of a world, for a ring in the place of the world's first robot, with the same free way; `None` for a
     /// world without a robot.
     pub fn of_world(name: String, number: u64, world: &World) -> Option<Self> {
         let robot = world.robots().first()?;

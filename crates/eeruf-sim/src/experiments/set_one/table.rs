@@ -51,7 +51,7 @@ pub struct SetOne {
 ///
 /// # Errors
 /// [`ExperimentError`] for no geometries, more than there are numbers for, no methods or two of one name, for an
-/// invalid ring, and if it was stopped.
+/// invalid ring, and if `keep_going` stopped it.
 ///
 /// ```
 /// use eeruf_sim::{Entry, Method, experiments::set_one::{SetOneOptions, set_one}};

@@ -107,8 +107,8 @@ pub struct Group {
 /// The result does not depend on the number of threads.
 ///
 /// # Errors
-/// [`ExperimentError`] for no placings, more than there are numbers for, no methods or two of one name, and if it was
-/// stopped.
+/// [`ExperimentError`] for no placings, more than there are numbers for, no methods or two of one name, and if
+/// `keep_going` stopped it.
 ///
 /// ```
 /// use eeruf_sim::{Entry, experiments::set_three::{SetThreeOptions, set_three}};

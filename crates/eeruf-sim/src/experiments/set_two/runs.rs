@@ -62,7 +62,7 @@ pub struct SetTwo {
 /// finished share, 0 to 1; if it returns `false`, the run stops. The result does not depend on the number of threads.
 ///
 /// # Errors
-/// [`ExperimentError`] for no courses, more than there are numbers for, or no methods, and if it was stopped.
+/// [`ExperimentError`] for no courses, more than there are numbers for, or no methods, and if `keep_going` stopped it.
 ///
 /// ```
 /// use eeruf_sim::{Entry, Method, experiments::set_two::{SetTwoOptions, set_two}};
@@ -130,7 +130,7 @@ pub struct Drive {
 /// if it returns `false`, the drive stops.
 ///
 /// # Errors
-/// [`ExperimentError`] for an invalid ring, and if it was stopped.
+/// [`ExperimentError`] for an invalid ring, and if `keep_going` stopped it.
 pub fn drive(
     options: &SetTwoOptions,
     entry: &Entry,

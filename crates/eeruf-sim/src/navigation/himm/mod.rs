@@ -13,9 +13,9 @@ use crate::geometry::{Point, Vector};
 
 /// The highest certainty value, as in the HIMM paper.
 pub const MAX_VALUE: u8 = 15;
-/// Gain of the cell at the measured range, as in the HIMM paper.
+/// Increase of the cell at the measured range, as in the HIMM paper.
 pub const INCREMENT: u8 = 3;
-/// Loss of each cell before the measured range, as in the HIMM paper.
+/// Decrease of each cell in front of the measured range, as in the HIMM paper.
 pub const DECREMENT: u8 = 1;
 
 /// The certainty grid: a square of cells on a lattice fixed in the scene. The square can be moved along with the robot.

@@ -57,7 +57,7 @@ pub(crate) struct Extents {
     starts: Vec<u32>,
     /// The surfaces that end at each edge, in the order of the edges.
     at_edges: Vec<u32>,
-    /// True if any wall's surface ends, on either side.
+    /// For each wall, true if its surface ends somewhere, on either side.
     ends: Vec<bool>,
 }
 
@@ -98,7 +98,7 @@ impl Extents {
         extents
     }
 
-    /// Lists the surfaces by their edges, and the walls that end.
+    /// Lists the surfaces that end at each edge, and marks the walls whose surface ends.
     fn index(&mut self, edges: usize, walls: usize) {
         let mut of_edges = vec![Vec::new(); edges];
         for (number, surface) in (0..).zip(&self.surfaces) {

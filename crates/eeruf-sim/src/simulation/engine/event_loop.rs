@@ -271,7 +271,7 @@ impl<K: Kinematics> EventLoop<K> {
         self.channels.share(shared);
     }
 
-    /// Changes a robot's ring to another schedule for as many sensors, at the end of its period.
+    /// Changes a robot's ring to another schedule for the same number of sensors, at the end of its period.
     pub(crate) fn change_schedule(&mut self, robot: usize, schedule: &AnySchedule) -> Result<(), ChangeError> {
         self.rings.get_mut(robot).map_or(Err(ChangeError::Fixed), |ring| ring.ring.change_schedule(schedule))
     }

@@ -85,7 +85,7 @@ impl Faults {
         Ok(Arc::new(self.base.with_scene(scene)))
     }
 
-    /// Returns the time when the first table changes after a time, or at any time.
+    /// Returns the time of the first change of a table after `now`, or of the first one of all.
     fn change_after(&self, now: Option<u64>) -> u64 {
         let tables = self.world.faults().iter().filter(|fault| matches!(fault.kind, FaultKind::OtherTable { .. }));
         let times = tables.flat_map(|fault| [ns(fault.from_s), ns(fault.to_s)]);

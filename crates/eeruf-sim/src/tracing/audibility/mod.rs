@@ -112,7 +112,7 @@ impl Audibility {
         self.receivers.extend(receivers);
     }
 
-    /// Returns the sound of the source by direction.
+    /// Returns the strength of the source's sound by direction.
     pub(crate) fn of_source(&self) -> Aim<'_> {
         Aim {
             envelope: &self.tables.departing,
@@ -122,7 +122,7 @@ impl Audibility {
         }
     }
 
-    /// Returns a receiver's hearing by direction, as for sound that it sends; `None` if everything counts as heard.
+    /// Returns a receiver's sensitivity by direction, in an emitter's form; `None` if everything counts as heard.
     pub(crate) fn of_receiver(&self, receiver: usize) -> Option<Aim<'_>> {
         let axis = *self.receivers.get(receiver).filter(|_| self.tables.floor > 0.0)?;
         Some(Aim {

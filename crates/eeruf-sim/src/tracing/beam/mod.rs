@@ -39,7 +39,7 @@ pub(crate) struct Beam {
     pub(crate) reflection_gain: f64,
     /// Heading of the source in the image's world, if it matters.
     pub(crate) axis: Vector,
-    /// Length beyond which no path of this beam is heard or within the query's limit.
+    /// Length beyond which paths of this beam are inaudible or exceed the query's limit.
     pub(super) reach_m: f64,
 }
 

@@ -15,7 +15,7 @@ use crate::{
     world::{motion::Motion, robot::Robot},
 };
 
-/// Builds the robot with this index, with the common firing unless it has its own.
+/// Builds the robot with this index; without firing of its own it uses the file's common one.
 pub(super) fn robot(
     source: &Source,
     index: usize,

@@ -18,7 +18,7 @@ struct Free {
 #[derive(Clone, Copy)]
 struct Level {
     free: Free,
-    /// Waits a and b that the sensors before leave to this level's sensor.
+    /// Waits a and b that the sensors of earlier levels leave to this level's sensor.
     left: [u64; 2],
     /// Values of |d| still to be tried.
     d_left: u64,

@@ -24,7 +24,7 @@ pub(crate) fn firing(readings: &Readings, k: usize) -> Firing {
     }
 }
 
-/// Rate below which a robot counts as standing, so that its log has no motion.
+/// Rate below which a robot counts as stationary, so that its log has no motion.
 const LEAST_US_MS: f32 = 1e-3;
 
 /// Returns every firing of the first robot, with the rate of change of its readings if it moves.

@@ -78,7 +78,7 @@ fn unlikely(world: &World) -> Option<String> {
     })
 }
 
-/// Returns true if no standing robot has a wall or a pole within its sensors' range.
+/// Returns true if no stationary robot has a wall or a pole within its sensors' range.
 fn is_silent(world: &World) -> bool {
     world.robots().iter().filter(|robot| matches!(robot.motion, Motion::Still)).all(|robot| {
         let reach_m = robot.transducers().map(|transducer| transducer.max_range_m).fold(0.0, f64::max);

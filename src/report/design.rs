@@ -140,7 +140,7 @@ fn span(sensors: usize, of: impl Fn(usize) -> Micros) -> String {
     if least == most { most.to_string() } else { format!("{least} to {most}") }
 }
 
-/// Formats a time as the change of range that it stands for.
+/// Formats a time as the change of range that it corresponds to.
 fn as_range(spec: &RingSpec, time: Micros) -> String {
     // c/2 in mm/s times us is 1e-7 cm.
     format!("{:.1} cm", 0.5e-7 * f64::from(spec.c.mm_per_s()) * f64::from(time.as_micros()))

@@ -97,7 +97,7 @@ macro_rules! cannot_be_verified {
 }
 cannot_be_verified!(1 3 8);
 
-/// Draws a schedule of this many sensors, in both languages, for a window that it mostly allows.
+/// Draws a schedule of this many sensors, in both languages, and a window that it usually allows.
 fn schedule<const M: usize>(r: &Random, c: &mut C, sensors: u8, period: u32) -> Fires<M>
 where
     Schedule<K, M>: Verify,

@@ -33,7 +33,7 @@ pub struct RingDesign {
     /// The shortest period, or the best found.
     pub found: Found<MAX_SENSORS>,
     /// The ring with a `t_delta` for which `bound` holds: the least that any schedule needs at that period, or the
-    /// design's own; for a robot that stands, the ring itself.
+    /// design's own; for a stationary robot, the ring itself.
     pub bounding: RingSpec,
     /// The bound on the period of every schedule for `bounding`: what a certificate can state.
     pub bound: Option<Micros>,

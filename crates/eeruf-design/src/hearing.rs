@@ -1,4 +1,4 @@
-//! Pairs of sensors that can hear each other from where they stand, directly or off one wall.
+//! Pairs of sensors that can hear each other from their places, directly or off one wall.
 
 use core::f64::consts::TAU;
 

@@ -8,7 +8,7 @@
 //! - every schedule in it, run at the longest period, leaves each sensor the longest period less the largest `max |d|`
 //!   between two firings.
 //!
-//! The second is a refire time, so the searches for rings that stand decide a region. All `|d|` lie a separation apart,
+//! The second is a refire time, so the searches for stationary rings decide a region. All `|d|` lie a separation apart,
 //! which bounds `max |d|` from below and so gives the least `t_delta` of a period.
 
 use eeruf_core::Micros;

@@ -15,7 +15,7 @@ use crate::limits::{four, neighbours_in_range, number, sensors_in_range};
 use crate::places::Places;
 use crate::uneven::OwnedUneven;
 
-/// Repeatability of readings of one wall on a robot that stands, for a file that names its modules and no jitter: a
+/// Repeatability of readings of one wall on a stationary robot, for a file that names its modules and no jitter: a
 /// choice.
 const USUAL_JITTER_US: u32 = 100;
 /// Distance in metres up to which walls make neighbours hear each other, for a file that names its modules and no
@@ -108,7 +108,7 @@ pub struct RingSpec {
     pub layout: OwnedLayout,
     /// Number of adjacent sensors that must not fire close together.
     pub neighbours: u8,
-    /// Pairs that the number of neighbours includes but that do not hear each other where they stand.
+    /// Pairs that the number of neighbours includes but that do not hear each other at their places.
     pub not_neighbours: Vec<(usize, usize)>,
     /// The least time between the firings of two neighbours (Sec. 3.1 c).
     pub min_interval: Micros,
@@ -126,14 +126,14 @@ pub struct RingSpec {
     pub stale_echo_by_module: bool,
     /// The speed of sound.
     pub c: SpeedOfSound,
-    /// The change that `t_delta` must cover on a robot that stands; the largest if sensors have their own.
+    /// The change that `t_delta` must cover on a stationary robot; the largest if sensors have their own.
     pub t_delta: Micros,
     /// Speed of the robot, in mm/s, if `t_delta` must cover its motion too.
     pub speed_mm_s: Option<u32>,
     /// The time that the controller needs for one firing; firings planned closer together happen one after the other.
     pub handling: Micros,
-    /// P: the largest change of a foreign sound's path from one reading to the next on a robot that
-    /// stands; `None` for `t_delta`.
+    /// P: the largest change of a foreign sound's path from one reading to the next on a stationary robot; `None` for
+    /// `t_delta`.
     pub path_change: Option<Micros>,
     /// R: how long sound is audible, if the file gives it.
     pub audible: Option<Micros>,

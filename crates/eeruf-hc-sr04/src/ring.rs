@@ -298,7 +298,7 @@ impl<'s, U: OwnLimits, J: Judge, T, I, D, const K: usize, const M: usize, const 
     /// Like [`Ring::change_schedule`].
     ///
     /// # Errors
-    /// [`SetupError::Retrigger`] if the schedule fires a sensor again sooner than it may be triggered, and as
+    /// [`SetupError::Retrigger`] if the schedule fires a sensor again sooner than it may be triggered, and as for
     /// [`Ring::change_schedule`]. The ring is then unchanged.
     pub fn change_schedule<L: OwnLimits<Held<'s> = U>>(
         &mut self,

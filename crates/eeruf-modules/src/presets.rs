@@ -1,4 +1,4 @@
-//! The presets. The source of each figure stands in docs/reference/modules.md.
+//! The presets. The source of each figure is in docs/reference/modules.md.
 
 use crate::module::{Beam, CLONE_HOLDS_US, Gain, Interface, Module, NoEcho};
 

@@ -141,8 +141,8 @@ pub(crate) fn asked<'py>(
 /// Check a certificate: that its schedule keeps the requirements in it, and that no period is below its bound.
 ///
 /// The checker is ``checker/check_period.py``, which shares nothing with the search; :func:`example` returns its text;
-/// ``docs/reference/certificate.md`` has the format and the proof of each rule. A certificate is only about the
-/// numbers that stand in it.
+/// ``docs/reference/certificate.md`` has the format and the proof of each rule. A certificate is only about the numbers
+/// in it.
 ///
 /// Args:
 ///     text: the certificate, as in ``design(..., certificate=True).certificate``.

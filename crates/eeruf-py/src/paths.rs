@@ -124,8 +124,8 @@ arrays! {
     }
 
     /// For each path its bounces from source to receiver, a list of tuples: a wall by its index, a pole by -1 minus its
-    /// index, an edge by 2^32 plus its index, the floor by 2^33 and the ceiling by one more. Those at floor and ceiling
-    /// stand last, in their own order.
+    /// index, an edge by 2^32 plus its index, the floor by 2^33 and the ceiling by one more. Bounces at floor and
+    /// ceiling come last, in their own order.
     #[getter]
     fn walls<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyList>> {
         let sequences = (0..self.paths.len()).map(|path| PyTuple::new(py, coded(self.paths.bounces(path))));

@@ -30,7 +30,7 @@ pub(crate) struct Fire {
     sensor: u8,
     /// The phase of the firing's wait: 0 for a, 1 for b.
     phase: u8,
-    /// Time when it was due, on the ring's clock: before the time of the poll if that was late.
+    /// Time when the firing was due, on the ring's clock; earlier than the poll if the poll was late.
     due_us: u32,
 }
 

@@ -192,8 +192,8 @@ impl Ring {
         event.map(|event| to_python(py, &event)).transpose()
     }
 
-    /// Report to a flow ring how fast the robot moves and turns, once per control cycle, even while it stands. Good
-    /// readings may then change by that much more. After half a second without a report ``top_speed_m_s`` is assumed.
+    /// Report to a flow ring how fast the robot moves and turns, once per control cycle, even at rest. Good readings
+    /// may then change by that much more. After half a second without a report ``top_speed_m_s`` is assumed.
     ///
     /// Args:
     ///     speed_m_s: in m/s, up to 100 in either direction.

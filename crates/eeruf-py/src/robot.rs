@@ -547,7 +547,7 @@ impl Robot {
         self.robot.odometry
     }
 
-    /// The constant velocity, (x, y) in m/s; None for a robot that stands or drives through waypoints.
+    /// The constant velocity, (x, y) in m/s; None for a robot that stands still or drives through waypoints.
     #[getter]
     fn velocity_m_s(&self) -> Option<(f64, f64)> {
         match &self.robot.motion {
@@ -556,7 +556,7 @@ impl Robot {
         }
     }
 
-    /// The constant rate of turn, in rad/s; None for a robot that stands or drives through waypoints.
+    /// The constant rate of turn, in rad/s; None for a robot that stands still or drives through waypoints.
     #[getter]
     fn turn_rad_s(&self) -> Option<f64> {
         match &self.robot.motion {

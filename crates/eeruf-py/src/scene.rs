@@ -57,7 +57,7 @@ use crate::{
 ///
 /// Raises:
 ///     EerufError: an array of the wrong shape, an index without a wall, an argument of the wrong type or out of range;
-///         walls that cross, have no length or are not finite, or a robot where none can stand.
+///         walls that cross, have no length or are not finite, or a robot at an occupied place.
 ///
 /// Example:
 ///     >>> from eeruf import sim

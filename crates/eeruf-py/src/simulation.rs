@@ -362,7 +362,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Move a robot to another place at once. It keeps the speeds set last, or stands.
+    /// Move a robot to another place at once. It keeps the speeds set last, or stands still.
     ///
     /// A ring with odometry takes the jump for motion. The new place may be occupied: see ``RobotState.touches``.
     ///

@@ -25,7 +25,7 @@ struct Known<const E: usize> {
     believed: Micros,
     /// The change in microseconds that a good reading may show since the belief was last confirmed.
     grown: u16,
-    /// The greatest rate since the sensor's last firing.
+    /// The greatest rate of change since the sensor's last firing.
     rate: Rate,
     /// Firings since the last accepted reading.
     age: u16,

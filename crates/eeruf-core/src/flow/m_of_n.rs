@@ -41,7 +41,7 @@ impl Vote {
 struct Known<const N: usize> {
     /// The last readings, the latest first.
     last: [Vote; N],
-    /// The greatest rate since the sensor's last firing.
+    /// The greatest rate of change since the sensor's last firing.
     rate: Rate,
     age: Age,
     is_clear: bool,

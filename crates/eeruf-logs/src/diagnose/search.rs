@@ -106,8 +106,7 @@ impl Search<'_> {
         self.open.sort_unstable();
     }
 
-    /// The probability that a reading, if it is not earlier than `echo_us`, lies within the tolerance of it by
-    /// accident.
+    /// The probability that a reading no earlier than `echo_us` lies within the tolerance of `echo_us` by accident.
     fn accident(&self, echo_us: i64) -> f64 {
         let below = |limit: i64| self.open.partition_point(|&open| open < limit);
         let near = below(echo_us + NEAR_US) - below(echo_us - NEAR_US);

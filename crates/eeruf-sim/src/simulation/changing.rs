@@ -9,7 +9,7 @@ use super::options::Options;
 use crate::{methods::Method, results::Readings, threads::Stop, world::World};
 
 /// Simulates worlds in turn, each for `each` periods of the first robot, until [`Options::periods`] are over. Only the
-/// scenes may differ, and nothing may move. Sound in flight when the scene changes arrives as in the scene before.
+/// scenes may differ, and nothing may move. Sound in flight when the scene changes arrives as in the previous scene.
 ///
 /// # Errors
 /// Errors of [`simulate`](super::simulate); [`SimulationError::Stopped`] without a world.

@@ -241,8 +241,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// Moves a robot to another place at once. The robot keeps the speeds set last, or stands. Readings before and
-    /// after are compared as if odometry had followed the jump. Free space is not checked.
+    /// Moves a robot to another place at once. The robot keeps the speeds set last, or stands still. Readings before
+    /// and after are compared as if odometry had followed the jump. Free space is not checked.
     ///
     /// # Errors
     /// The robot does not exist, or the pose is beyond 10^6 m.

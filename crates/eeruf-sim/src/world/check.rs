@@ -1,4 +1,4 @@
-//! Checks that a robot is valid and stands free in its scene.
+//! Checks that a robot is valid and touches nothing in its scene.
 
 use eeruf_core::{MAX_PERIOD, MAX_SENSORS, Micros};
 

@@ -8,7 +8,7 @@ pub const MAX_SPEED: f64 = 50.0;
 /// Motion of a robot from its first pose on.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub enum Motion {
-    /// The robot stands.
+    /// The robot stands still.
     #[default]
     Still,
     /// The robot keeps a velocity and a rate of turn forever.

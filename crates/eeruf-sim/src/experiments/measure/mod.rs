@@ -1,7 +1,7 @@
 //! Ways of firing measured by a robot's needs: how soon it sees an object that appears, and how often it stops for no
 //! reason.
 //!
-//! **Trial.** The robot stands, drives along its free way and back, or turns on the spot in a room of the
+//! ****Trial.** The robot stands still, drives along its free way and back, or turns on the spot in a room of the
 //! [set](crate::experiments::rooms), alone or (in rooms of the kind `meeting`) with another robot of its make. The
 //! physics is the default, between floor and ceiling. At a uniformly drawn instant in 5 to 15 s one of five
 //! [things](ThingKind) appears and stays. It appears before a uniformly drawn sensor: its nearest point is 0.3 to 2 m

@@ -43,7 +43,7 @@ const LOOK_S: f64 = 0.01;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Moving {
-    /// The robot stands.
+    /// The robot stands still.
     Standing,
     /// The robot drives to and fro along its free way.
     Driving,

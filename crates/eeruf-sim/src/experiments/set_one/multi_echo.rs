@@ -5,7 +5,7 @@ use eeruf_core::Micros;
 use crate::world::Robot;
 
 /// Settings for the comparison of several echoes by [`Method::MultiEcho`](crate::Method::MultiEcho). With up to eight
-/// echoes per firing, a larger `t_delta` lets more pairs agree by accident; for a standing robot it covers the jitter.
+/// echoes per firing, a larger `t_delta` lets more pairs agree by accident; at rest it covers the jitter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct MultiEcho {
     /// Number of readings that must agree, 2 to 8. A new echo is believed after as many periods.

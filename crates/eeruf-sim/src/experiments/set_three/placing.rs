@@ -40,7 +40,7 @@ pub enum Site {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Arrangement {
-    /// The robots stand, each at a random heading.
+    /// The robots stand still, each at a random heading.
     Standing,
     /// Two rows drive past each other, side by side.
     Meeting,

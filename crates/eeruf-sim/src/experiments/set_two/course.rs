@@ -126,7 +126,7 @@ impl Course {
         robot
     }
 
-    /// Makes the other robot: a standing ring of 24 sensors all around that fires 24 times in 80 ms, with a clock 40
+    /// Makes the other robot: a stationary ring of 24 sensors all around that fires 24 times in 80 ms, with a clock 40
     /// ppm fast and a random start.
     pub fn second_robot(&self, at: Point) -> Robot {
         let mut random = Random::new(self.number).of(3);

@@ -15,7 +15,7 @@ pub(in crate::simulation) struct Bodies {
     /// For each robot, its first side and its disc.
     first: Vec<[u32; 2]>,
     any: bool,
-    /// Recent scenes of the world with these sides; they stay the same while robots stand.
+    /// Recent scenes of the world with these sides; they stay the same while robots stand still.
     sided: Vec<(Vec<Wall>, Scene)>,
 }
 

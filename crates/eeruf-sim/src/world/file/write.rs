@@ -132,7 +132,7 @@ impl From<&Body> for BodyFile {
 }
 
 impl MotionFile {
-    /// Converts a motion to a file's form; `None` for a robot that stands.
+    /// Converts a motion to a file's form; `None` for a robot that stands still.
     fn of(motion: &Motion) -> Option<Self> {
         let none = Self { velocity_m_s: None, turn_deg_s: None, turn_rad_s: None, waypoints_m: None, speed_m_s: None };
         match motion {

@@ -29,7 +29,7 @@ pub(crate) struct Settings {
 }
 
 impl Settings {
-    /// The width of lines on a stream: `COLUMNS` if it is set, or that of the terminal. `None` for lines of any length.
+    /// The width of lines on a stream: `COLUMNS` if it is set, or the terminal's. `None` for lines of any length.
     fn width(self, term: &Term, is_terminal: bool) -> Option<usize> {
         if self.wide {
             return None;

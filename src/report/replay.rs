@@ -59,7 +59,7 @@ pub(crate) struct Counts {
     /// Readings that are not numbers.
     #[serde(skip_serializing_if = "is_zero")]
     invalid: u64,
-    /// Readings whose time is before that of the previous reading.
+    /// Readings with an earlier time than the previous reading.
     #[serde(skip_serializing_if = "is_zero")]
     backwards: u64,
     /// Pauses; nothing is compared across them.

@@ -58,7 +58,7 @@ impl<L: Deref<Target = [VerifiedSchedule<K, M, U>]>, const K: usize, const M: us
     /// that allow its own `t_delta` and window.
     ///
     /// # Errors
-    /// [`ScheduleError`] if there is no rung, if a period is not longer than the one before, or if the number of
+    /// [`ScheduleError`] if there is no rung, if a period is not longer than the previous one, or if the number of
     /// sensors changes.
     pub fn new(rungs: L) -> Result<Self, ScheduleError> {
         Self::of(rungs, |rung| (rung.sensors(), rung.period()))

@@ -28,10 +28,10 @@ use crate::time::Micros;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 pub struct Uneven<'a> {
-    /// `T_delta` of each sensor; empty if all have that of the requirements. Two sensors need the separation of the
+    /// `T_delta` of each sensor; empty if all have the common one. Two sensors need the separation of the
     /// larger value, since crosstalk passes both ways.
     pub t_delta: &'a [Micros],
-    /// `T_wind` of each sensor; empty if all have that of the requirements.
+    /// `T_wind` of each sensor; empty if all have the common one.
     pub window: &'a [Micros],
     /// Least time between two triggers of each sensor, if longer than its window; empty if no sensor needs it.
     pub refire: &'a [Micros],

@@ -18,7 +18,7 @@ pub struct OwnedUneven {
 
 impl OwnedUneven {
     /// Needs of this many sensors, counted from 0. `t_delta`, `window` and `refire` may be empty: all sensors then have
-    /// those of the requirements.
+    /// the common values.
     ///
     /// # Errors
     /// The first invalid value.

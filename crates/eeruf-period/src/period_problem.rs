@@ -179,7 +179,7 @@ impl PeriodProblem<'_> {
         Ok((self.schedule(period, &spare.fire)?, self.slack(&spare)))
     }
 
-    /// The largest `t_delta` at a given period; that of the requirements is ignored. The schedule is the
+    /// The largest `t_delta` at a given period; the requirements' own is ignored. The schedule is the
     /// [preferred](Self::prefer) one.
     ///
     /// # Errors

@@ -108,12 +108,12 @@ impl FlowSettings {
         BeliefSettings { alone: self.alone.unwrap_or(false), ..self.belief.unwrap_or_default() }
     }
 
-    /// Belief settings: these, or else those of the ring's file.
+    /// Returns these belief settings, or else the ring file's.
     pub(crate) fn belief_over(&self, file: BeliefSettings) -> BeliefSettings {
         BeliefSettings { alone: self.alone.unwrap_or(file.alone), ..self.belief.unwrap_or(file) }
     }
 
-    /// Settings of the plan: these, and for the rest those of the ring's file.
+    /// Returns these settings of the plan, completed by the ring file's.
     pub(crate) fn turns_over(&self, file: TurnSettings) -> TurnSettings {
         let mut turns = TurnSettings { seed: self.drawn_seed(), ..file };
         turns.least = self.least.unwrap_or(turns.least);

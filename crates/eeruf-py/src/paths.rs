@@ -50,7 +50,7 @@ const LOW_ORDER: u32 = 6;
 
 impl Paths {
     /// Finds all paths within limits under a physics, in the background if that may take long. Frequency and burst are
-    /// those of the first robot's transducers, or of a Polaroid 6500 if there is no robot.
+    /// taken from the first robot's transducers, or a Polaroid 6500 if there is no robot.
     pub(crate) fn find(
         scene: &Bound<'_, PyAny>,
         contents: Arc<Contents>,

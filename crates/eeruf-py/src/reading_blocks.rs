@@ -55,7 +55,7 @@ impl ReadingBlocks {
 ///     progress: as for :func:`simulate`.
 ///
 /// Returns:
-///     An iterator of ``Readings``, which together are those of :func:`simulate`.
+///     An iterator of ``Readings``, which together equal those of :func:`simulate`.
 ///
 /// Raises:
 ///     EerufError: as for :func:`simulate`.

@@ -383,7 +383,7 @@ arrays! {
         slf.py().import("eeruf._frames")?.call_method1("to_xarray", (Self::columns(slf)?, about))
     }
 
-    /// Some of the readings: those of a slice, a mask or an array of indices. Duration and sensors are unchanged.
+    /// Some of the readings, chosen by a slice, a mask or an array of indices. Duration and sensors are unchanged.
     fn __getitem__(&self, key: &Bound<'_, PyAny>) -> PyResult<Self> {
         let refused = || wrong("readings[..]", shown(key), "a slice, a mask of as many bools, or an array of indices");
         let all = key.py().import("numpy")?.call_method1("arange", (self.readings.len(),))?;

@@ -31,7 +31,7 @@ pub type FlowRing<const K: usize, const E: usize = 1, U = ()> = Ring<InTurn<K, U
 
 impl<const K: usize, const E: usize> FlowRing<K, E> {
     /// A ring of `sensors` sensors that begins at `now`. Only the window and the blanking time of `config` are used. R
-    /// is the longest quiet of `turns`, and P is that of `belief`.
+    /// is the longest quiet of `turns`, and P comes from `belief`.
     ///
     /// # Errors
     /// [`RingError::Setting`] for a setting out of its range, and as for [`Ring::judged_by`].

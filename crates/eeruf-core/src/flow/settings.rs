@@ -58,7 +58,7 @@ impl TurnSettings {
     }
 
     /// The limits of each sensor for [`FlowRing::with_limits`](crate::flow::FlowRing::with_limits): its window, its
-    /// `t_delta` (at most that of the belief), the sensors with which it fires together, such as those on one trigger
+    /// `t_delta` (at most the belief's), the sensors with which it fires together, such as those on one trigger
     /// line, and those with which it shares an echo line. All other requirements apply only to tables.
     ///
     /// # Errors

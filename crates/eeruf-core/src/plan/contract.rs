@@ -28,7 +28,7 @@ pub struct PlanLimits<'s> {
     pub longest_window: Micros,
     /// Requirements that the schedule was verified for, if it was: the ring may ask for less but not for more.
     pub verified_for: Option<&'s VerifiedFor>,
-    /// Time for which sound is assumed audible: that of the verified requirements, or the period. `None` without a
+    /// Time for which sound is assumed audible: the verified requirements' time, or the period. `None` without a
     /// common period.
     pub audible: Option<Micros>,
 }

@@ -35,11 +35,11 @@ pub enum Silence {
 #[cfg_attr(feature = "defmt", derive(defmt::Format))]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct RingConfig<const E: usize = 1> {
-    /// `T_delta`: the greatest difference between near-identical consecutive readings. `None` for that of the verified
-    /// schedule.
+    /// `T_delta`: the greatest difference between near-identical consecutive readings. `None` for the verified
+    /// schedule's.
     pub t_delta: Option<Micros>,
     /// `T_wind`: how long a sensor listens after it has fired. An echo at exactly this time still counts. `None` for
-    /// that of the verified schedule.
+    /// the verified schedule's.
     pub window: Option<Micros>,
     /// Time after a firing in which edges count as ringing of the transducer, not as echoes.
     pub blanking: Micros,
@@ -50,7 +50,7 @@ pub struct RingConfig<const E: usize = 1> {
     /// needs the jitter plus `2 v dt / c`. A value below `T_delta` makes fewer readings ambiguous if firings are late.
     /// At most 65,534 us.
     pub path_change: Option<Micros>,
-    /// R: how long sound is audible after its firing. `None` for that of the verified schedule; without one, the period
+    /// R: how long sound is audible after its firing. `None` for the verified schedule's; without one, the period
     /// or, with immediate refiring, the listening time or the least refire time. 1 ms to 67 s.
     pub audible: Option<Micros>,
 }

@@ -305,8 +305,8 @@ impl<P: Plan, J: Judge, const K: usize, const E: usize, const H: usize> Ring<P, 
     }
 
     /// The upcoming firings in order, for hardware that fires by itself: a timer, PIO or RMT. They are valid until one
-    /// is late or the ring is changed. With a table they reach to the end of the next period, otherwise to that of the
-    /// current one.
+    /// is late or the ring is changed. With a table they reach to the end of the next period, otherwise to the end of
+    /// the current one.
     ///
     /// The main loop may then run late. Replay what happened in order: for each firing, poll at its instant until there
     /// is no event ([`RingEvent::Fire`] then reports a firing that is already done) and report its echoes; finally poll

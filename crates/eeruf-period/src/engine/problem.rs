@@ -249,7 +249,7 @@ impl Problem {
     }
 }
 
-/// The most common number, the largest of several, and its count.
+/// The most common number (of equally common ones the largest), and its count.
 pub(crate) fn most_common(numbers: &[u32]) -> Option<(u32, usize)> {
     let often = |number: u32| numbers.iter().filter(|other| **other == number).count();
     numbers.iter().map(|&number| (number, often(number))).max_by_key(|&(number, often)| (often, number))

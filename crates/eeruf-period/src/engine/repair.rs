@@ -2,7 +2,7 @@
 //!
 //! *Min-conflicts* (Minton, Johnston, Philips and Laird 1992) with *breakout* weights (Morris 1993) of each pair's gaps
 //! and separation: needs that a move without gain leaves broken weigh more. A move is to the best pair of times of one
-//! sensor. The cost of a pair is the sum of those of both times and of `|d|`: for each `d` two rows are added.
+//! sensor. The cost of a pair is the sum of the costs of both times and of `|d|`: for each `d` two rows are added.
 
 use crate::engine::construct::Times;
 use crate::engine::descent::Random;

@@ -55,7 +55,7 @@ impl Turns {
     }
 }
 
-/// Adds sensor x as the next to fire; of several at the same instant the one with the lowest number counts as first.
+/// Adds sensor x as the next to fire; of simultaneous firings, the lowest number counts as first.
 pub(crate) fn place(state: &mut State, x: usize) -> Result<(), Refuted> {
     let State { turns: Some(turns), bounds, .. } = state else { return Ok(()) };
     let Some(phase) = turns.phase() else { return Ok(()) };

@@ -51,7 +51,7 @@ fn is_own(port: u16) -> bool {
     numbers.filter_map(|fd| getsockname::<SockaddrIn>(fd).ok()).any(|address| address.port() == port)
 }
 
-/// Returns true, since this system does not tell.
+/// Returns true, since this system gives no answer.
 #[cfg(not(target_os = "linux"))]
 fn is_own(_: u16) -> bool {
     true

@@ -57,7 +57,7 @@ pub struct Tracer {
     /// Length of the burst, in cycles. With [`narrow_panels`](Self::narrow_panels), paths over a wall's two ends that
     /// differ by less are heard as one. A [`CrosstalkMatrix`](crate::CrosstalkMatrix) sets it to the emitter's.
     pub burst_cycles: u32,
-    /// Largest number of bounces of a path with a pole, at most that of all other paths. The default is [`MAX_ORDER`].
+    /// Largest number of bounces of a path with a pole, at most the limit for others. The default is [`MAX_ORDER`].
     pub pole_order: u32,
     /// Switch that ends a running query with [`PathsError::Stopped`].
     pub stop: Stop,

@@ -25,7 +25,7 @@ use crate::{
 pub struct MeasureAsked {
     /// The conditions.
     pub conditions: Vec<Condition>,
-    /// Rooms of the caller's own; none for those of the set.
+    /// The caller's own rooms; empty for rooms of the set.
     pub own: Vec<RoomGroup>,
     /// The number of the first room of each kind. Settings are chosen on numbers below 2,000, and reported from
     /// [`FIRST`](crate::experiments::FIRST) on.

@@ -45,7 +45,7 @@ pub struct Brief {
     pub belief_right: Option<Spread>,
 }
 
-/// The result of one placing under one method, with the figures that [`Figures`] spreads.
+/// The result of one placing under one method, with the figures whose spread [`Figures`] gives.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Run {
     /// The placing's number, which seeds all random values.

@@ -187,8 +187,7 @@ impl Receiver {
         self.next.map_or(NEVER, |next| next.at)
     }
 
-    /// Returns true if an arrival at about this time, plus or minus `slack`, can matter. Most cannot, and need no
-    /// random numbers.
+    /// Returns true if an arrival within `slack` of this time can matter. Most cannot, and need no random numbers.
     #[inline]
     pub(crate) fn cares(&self, at: u64, slack: u64) -> bool {
         let latest = at + slack;

@@ -206,7 +206,7 @@ impl Audibility {
         self.sent(cos) * most * most >= self.faint(least_m) * least_m * least_m
     }
 
-    /// Returns true if a path around an edge may be heard, if its amplitude without the patterns is at most `most`.
+    /// Returns true if a path around an edge may be heard. Its amplitude without the patterns is at most `most`.
     /// `out` leads from the source to the edge, `home` from the receiver.
     #[inline]
     pub(crate) fn may_hear_around(&self, most: f64, receiver: usize, out: Vector, home: Vector, length_m: f64) -> bool {

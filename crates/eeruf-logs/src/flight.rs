@@ -124,7 +124,7 @@ fn size(kind: &str) -> Option<usize> {
     })
 }
 
-/// The number of a field.
+/// The numeric value of a field.
 fn field(fields: &Fields, body: &[u8], name: &str) -> Option<f64> {
     let mut rest = Bytes::new(body, Order::Little);
     for (own, kind) in fields {

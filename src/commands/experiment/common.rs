@@ -15,7 +15,7 @@ use crate::files::error::InputError;
 use crate::report::draw::Picture;
 use crate::report::watch::Watch;
 
-/// Budget of nodes for the search for `eeruf_best`; it is proven shortest long before.
+/// Budget of nodes for the search for `eeruf_best`; the proof takes far fewer.
 pub(crate) const BUDGET: u64 = 300_000;
 
 /// Arguments of both sets.

@@ -239,8 +239,8 @@ impl Series {
             && ratios.any(|(low, high)| is_precise(low, high) || is_precise(1.0 / low, 1.0 / high))
     }
 
-    /// The width of the interval of ratios that at least 95 % of the pairs have; `None` if fewer do. Numbers may be
-    /// rounded or cut.
+    /// The width of the interval that holds the ratios of at least 95 % of the pairs; `None` if there is none. Numbers
+    /// may be rounded or cut.
     fn holds(&self, other: &Self, pairs: &[Option<(f64, f64)>], one: f64, two: f64) -> Option<f64> {
         let (low, high) = (one.min(two), one.max(two));
         let (mut fit, mut least, mut most) = (0, 0.0f64, f64::INFINITY);

@@ -121,7 +121,7 @@ impl<'p, 'm> Feasibility<'p, 'm> {
         true
     }
 
-    /// The branch after `last`: open orders, sums that are too close, ranks from the top, values from the top.
+    /// The branch after `last`: open orders first, then sums that are too close, then ranks and values from the top.
     fn next_branch(&self, last: Option<Branch>) -> Option<Branch> {
         let order = match last {
             None => self.open_order(0, 0),

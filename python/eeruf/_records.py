@@ -164,7 +164,7 @@ class State(Result):
 
 @dataclass(frozen=True)
 class RobotState(Result):
-    """The present state of a robot in a ``Simulation``.
+    """The current state of a robot in a ``Simulation``.
 
     Example:
         >>> from eeruf import sim

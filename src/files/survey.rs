@@ -54,7 +54,7 @@ pub(crate) fn simulate(world: &World, plan: SurveyPlan, keep_going: KeepGoing<'_
     Ok(FiringLog::new(CLOCK, firings))
 }
 
-/// The paths between the sensors of the first robot, its own echoes among them.
+/// The paths between the sensors of the first robot, each sensor's own echoes included.
 pub(crate) fn true_paths(world: &World) -> Result<Vec<TruePath>, PathsError> {
     let Some(robot) = world.robots().first() else { return Ok(vec![]) };
     let air = world.scene().air();

@@ -81,7 +81,7 @@ type Fitting = (PulseTimes, Option<(Board, Wiring)>);
 /// Checks what a program needs in any way of firing.
 ///
 /// # Errors
-/// A wish that the language, the board or the modules cannot fulfil, in words.
+/// A message about what the language, the board or the modules cannot do.
 pub(crate) fn fitting(
     spec: &RingSpec,
     language: Language,

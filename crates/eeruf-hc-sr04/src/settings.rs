@@ -66,7 +66,7 @@ impl Settings {
 
 /// Makes a flow ring of `K` such modules, which listen as far as they see, with all times from the module, as
 /// `eeruf design` has them at 20 degrees Celsius. The compiler can make it, for a `static`; then give it the robot's
-/// own seed ([`FlowRing::set_seed`]) and the present time ([`restart`](eeruf_core::Ring::restart)).
+/// own seed ([`FlowRing::set_seed`]) and the current time ([`restart`](eeruf_core::Ring::restart)).
 ///
 /// ```
 /// use eeruf_core::{Instant, flow::FlowRing};

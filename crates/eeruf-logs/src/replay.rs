@@ -188,7 +188,7 @@ struct Recorded {
     limits: EachSensor<MAX_SENSORS>,
 }
 
-/// A time as on a clock that wraps in 71 minutes.
+/// The horizon of the replay: half of the 71 minutes in which its clock wraps.
 const ANY: Micros = Micros::new(1 << 31);
 
 impl Recorded {

@@ -25,7 +25,7 @@ pub struct PathSettings {
 }
 
 impl Default for PathSettings {
-    /// 100 us, and one path in a hundred surveys.
+    /// A tolerance of 100 us, and one accidental path in a hundred surveys.
     fn default() -> Self {
         Self { tolerance_us: 100, accidents: 0.01 }
     }
@@ -117,7 +117,7 @@ const MOST_PATHS: usize = 200;
 const LOOKED_AT: usize = 4;
 /// Share of the unhidden slots with an offset in which a path must be heard to support that offset.
 const SUPPORTS: f64 = 0.5;
-/// Base of votes that are by slot, beyond all offsets.
+/// Base of the votes that are slots, above all votes that are offsets.
 const BY_SLOT: i64 = 1 << 40;
 
 /// Finds the paths between all sensors of a survey.

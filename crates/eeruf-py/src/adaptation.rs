@@ -109,7 +109,7 @@ impl Adaptation {
     ///     event: an event that its ``poll`` returned.
     ///
     /// Returns:
-    ///     True if the schedule changes; the ring makes the change when the present period ends.
+    ///     True if the schedule changes; the ring makes the change when the current period ends.
     ///
     /// Raises:
     ///     EerufError: not a ring, not an event, or a ring with another number of sensors; the ring refuses the

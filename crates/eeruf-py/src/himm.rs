@@ -13,7 +13,7 @@ use crate::{
     readings::Readings,
 };
 
-/// Largest range, in metres, over which a reading is entered.
+/// Largest range, in metres, up to which a reading is entered.
 const FARTHEST_M: f64 = 1e3;
 
 /// A certainty grid that range readings fill and clear while the robot drives: histogramic in-motion mapping

@@ -255,7 +255,7 @@ impl AnyRing {
         event
     }
 
-    /// The schedule of the present period.
+    /// The schedule of the current period.
     pub(crate) fn schedule(&mut self) -> PyResult<AnySchedule> {
         table!(self, "schedule", |ring| **ring.plan().table())
     }
@@ -286,7 +286,7 @@ impl AnyRing {
         table!(self, "path_change_us", |ring| sensors.map(|of| ring.path_change_of(of)).max().unwrap_or_default())
     }
 
-    /// Changes the schedule when the present period ends.
+    /// Changes the schedule when the current period ends.
     pub(crate) fn change_schedule(&mut self, schedule: &AnySchedule) -> PyResult<()> {
         let sensors = self.schedule()?.sensors();
         if schedule.sensors() != sensors {

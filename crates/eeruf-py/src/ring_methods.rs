@@ -163,7 +163,7 @@ impl Ring {
     /// Report the echoes you know of before you poll: one that comes after the poll that closed its window is lost.
     ///
     /// Args:
-    ///     now_us: the present, 0 or more.
+    ///     now_us: the current time, 0 or more.
     ///     expected_change_us: for each sensor, the expected change of a good reading since the previous one, by the
     ///         robot's own motion: ``-2 v dt / c`` for an object approached at ``v``. None for a robot at rest.
     ///
@@ -198,7 +198,7 @@ impl Ring {
     /// Args:
     ///     speed_m_s: in m/s, up to 100 in either direction.
     ///     turn_rad_s: in rad/s, up to 100 in either direction.
-    ///     now_us: the present, 0 or more.
+    ///     now_us: the current time, 0 or more.
     ///
     /// Raises:
     ///     EerufError: an invalid speed or time; the ring fires by a schedule, whose :meth:`poll` takes
@@ -250,7 +250,7 @@ impl Ring {
     /// be compared.
     ///
     /// Args:
-    ///     now_us: the present, 0 or more.
+    ///     now_us: the current time, 0 or more.
     ///
     /// Raises:
     ///     EerufError: an invalid time.
@@ -265,13 +265,13 @@ impl Ring {
         Ok(until(ask!(self.0.get()?, |ring| ring.next_deadline()), now))
     }
 
-    /// Schedule of the present period, for a ring that fires by a schedule.
+    /// Schedule of the current period, for a ring that fires by a schedule.
     #[getter]
     fn schedule(&self) -> PyResult<Schedule> {
         Ok(Schedule(self.0.get()?.schedule()?))
     }
 
-    /// Fire by another schedule when the present period ends. ``t_delta_us``, ``window_us`` and the needs of
+    /// Fire by another schedule when the current period ends. ``t_delta_us``, ``window_us`` and the needs of
     /// single sensors are unchanged.
     ///
     /// Args:
@@ -295,7 +295,7 @@ impl Ring {
         self.0.get()?.change_schedule(&schedule.get().0)
     }
 
-    /// ``T_delta``, in microseconds. It can be changed while the ring runs, if it fires by a :class:`Schedule`.
+    /// ``T_delta``, in microseconds. It can be changed while the ring runs, if the ring fires by a :class:`Schedule`.
     #[getter]
     fn t_delta_us(&self) -> PyResult<u32> {
         Ok(self.0.get()?.t_delta().as_micros())
@@ -374,7 +374,7 @@ impl Ring {
     ///
     /// They are valid until one is late or the ring is changed. The loop itself may be late: for each firing, poll at
     /// its instant until there is no event, so that ``Fire`` reports a completed firing; then report the echoes, and
-    /// finally poll at the present.
+    /// finally poll at the current time.
     ///
     /// Example:
     ///     >>> import eeruf
@@ -664,7 +664,7 @@ impl Ring {
     /// Firings in progress are dropped, and earlier readings are forgotten.
     ///
     /// Args:
-    ///     now_us: the present, 0 or more.
+    ///     now_us: the current time, 0 or more.
     ///
     /// Raises:
     ///     EerufError: an invalid time.

@@ -49,7 +49,7 @@ use crate::{
 ///     max_order: how many bounces :func:`simulate` follows; 6 by default.
 ///     physics: ``"plain"``, ``"default"``, or a dict of differences from a ``preset``: ``shadows``, ``edges``,
 ///         ``narrow_panels``, ``range_walk``, ``interference`` (each True or False), ``fading_time_s``; see
-/// ``docs/explanation/physics.md``.
+///         ``docs/explanation/physics.md``.
 ///     height: ``"flat"``, all sound in one plane; ``"room"``, between a floor and a ceiling at 2.6 m; or a dict of
 ///         differences from that room: ``ceiling_m``, and ``floor`` and ``ceiling`` as in ``materials``.
 ///     faults: faults to simulate, dicts with the keys of ``[[fault]]`` in scene files, such as
@@ -255,7 +255,7 @@ impl Scene {
     /// Read a scene from the text of a scene file, as :meth:`to_toml` writes it.
     ///
     /// Args:
-    ///     text: the contents of a file; a schedule that it names is looked up in the present folder.
+    ///     text: the contents of a file; a schedule that it names is looked up in the current folder.
     ///
     /// Raises:
     ///     EerufError: not a string; or an invalid scene, with the name, the value and what is expected.

@@ -22,7 +22,7 @@ use crate::{
 ///     sensors: how many, 1 to 64.
 ///     blind_after: a sensor counts as blind when nothing was accepted for this many firings with an echo, 1 to 255;
 ///         0: never.
-///     now_us: the present, 0 or more.
+///     now_us: the current time, 0 or more.
 ///
 /// Raises:
 ///     EerufError: an argument of the wrong type or out of range.
@@ -104,7 +104,7 @@ impl SensorWatch {
     ///
     /// Args:
     ///     sensor: its index, from 0.
-    ///     now_us: the present, 0 or more.
+    ///     now_us: the current time, 0 or more.
     ///
     /// Raises:
     ///     EerufError: an invalid sensor or time.

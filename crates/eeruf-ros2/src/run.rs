@@ -194,7 +194,7 @@ impl EerufNode {
         }
     }
 
-    /// Simulates until the present.
+    /// Simulates up to the current time.
     fn simulate(&mut self) -> Result<(), String> {
         let Some(simulator) = &mut self.simulator else { return Ok(()) };
         match self.ros.as_ref().and_then(Ros::velocity) {

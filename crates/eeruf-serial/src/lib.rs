@@ -3,8 +3,8 @@
 //!
 //! - [`Recorder`] follows the events of a ring and makes the frames: `no_std`, no allocator, no dependency but
 //!   `eeruf-core`. It uses [`Encoder`], which writes the bytes.
-//! - `Decoder`, with the feature `decode`, reads them: whatever gets lost or flipped on the way costs the frames that
-//!   it hits and no other.
+//! - `Decoder`, with the feature `decode`, reads them: whatever gets lost or flipped on the way costs only the frames
+//!   that it hits.
 //!
 //! ```
 //! use eeruf_core::{Instant, Ring, RingConfig, tables::PAPER_12};

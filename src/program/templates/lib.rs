@@ -18,8 +18,8 @@ pub const SENSORS: usize = @sensors@;  //@table
 pub static EDGES: EdgeQueue<32> = EdgeQueue::new();
 
 /// The ring on its pins. `poll(now)` fires what is due and returns readings; `next_deadline()` says until when to
-/// sleep; `moving(speed_mm_s, turn_mrad_s, now)`, once a control cycle, how the robot moves, else the ring  //@flow
-/// file's speed counts.  //@flow
+/// sleep; call `moving(speed_mm_s, turn_mrad_s, now)` once a control cycle with the robot's motion, else the  //@flow
+/// ring file's speed counts.  //@flow
 /// sleep.  //@table
 pub type Sonar<T, I, D> =
     HcSr04Ring<@ring@, T, I, D, SENSORS, &'static EdgeQueue<32>>;

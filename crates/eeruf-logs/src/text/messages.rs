@@ -20,8 +20,8 @@ pub(super) enum End {
 }
 
 impl End {
-    /// The mark at the beginning of a text: after keys and elements of lists a line that ends them, or blocks with the
-    /// same two or more keys.
+    /// Finds the mark from the beginning of a text: a line that ends the keys and list elements, or blank lines between
+    /// blocks with the same two or more keys.
     pub(super) fn of(start: &str) -> Option<Self> {
         let is_plain = |key: &str| key.bytes().all(|byte| byte.is_ascii_alphanumeric() || byte == b'_');
         let is_key = |line: &&str| entry(line).is_some_and(|(key, _)| line.starts_with(key) && is_plain(key));

@@ -126,8 +126,8 @@ struct Moves {
 }
 
 impl Moves {
-    /// The moves of a ring: sensor x moves as far as x + n, and so as x + g, with the greatest common divisor g of n
-    /// and the number of sensors.
+    /// The moves of a ring: sensor x moves as far as x + n, and so as far as x + g, where g is the greatest common
+    /// divisor of n and the number of sensors.
     fn of_ring(n: i32, count: i32) -> Self {
         let (mut divisor, mut rest) = (n, count);
         while rest > 0 {

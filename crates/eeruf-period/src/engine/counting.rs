@@ -123,8 +123,9 @@ pub(crate) fn lines_of(cliques: &[u64], sensors: &[usize]) -> String {
 }
 
 /// **Sequence.** In ascending order each `|d|` is at least the larger of two separations above the one before: the
-/// least period over all sequences, by the number of sensors taken and the separation of the last. Of equal separations
-/// the longest window comes first, since exchanging two changes no distance. Returns 1 if that takes too long.
+/// least period over all sequences, by the number of sensors taken and the separation of the last. Among equal
+/// separations the longest window comes first, since exchanging two changes no distance. Returns 1 if that takes too
+/// long.
 fn in_sequence(merged: &Merged) -> u32 {
     let mut separations = merged.separation.clone();
     separations.sort_unstable();

@@ -135,8 +135,8 @@ impl Repair {
         }
     }
 
-    /// The times of x that violate least, at random among equal ones and different from the present ones if possible;
-    /// true if they violate less than the present ones.
+    /// The times of x that violate least, at random among equal ones and different from the current ones if possible;
+    /// true if they violate less than the current ones.
     fn best(&mut self, merged: &Merged, x: usize) -> (bool, [i32; 2]) {
         let Self { random, period, times, costs: [of_a, of_b, of_size], .. } = self;
         let (first, last) = sizes(merged, *period, x);

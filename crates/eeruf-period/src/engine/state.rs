@@ -123,14 +123,14 @@ impl State {
         self.trail.truncate(mark.trail);
     }
 
-    /// Returns true if nothing followed from the present bounds on |d| and their order.
+    /// Returns true if nothing followed from the current bounds on |d| and their order.
     pub(crate) fn has_seen_sizes(&self) -> bool {
         let seen = &self.seen.sizes;
         seen.len() == self.low.len()
             && seen.iter().enumerate().all(|(x, seen)| *seen == (self.high(x), self.low[x], self.below[x]))
     }
 
-    /// Notes that nothing follows from the present bounds on |d| and their order.
+    /// Notes that nothing follows from the current bounds on |d| and their order.
     pub(crate) fn see_sizes(&mut self) {
         let mut sizes = core::mem::take(&mut self.seen.sizes);
         sizes.clear();

@@ -28,7 +28,7 @@ pub fn requirements_of(robot: &Robot) -> Requirements<'static> {
 }
 
 /// Searches `budget` nodes for the schedule with the shortest period that meets the [requirements](requirements_of) of
-/// a robot. `keep_going` is called sometimes, and may end the search.
+/// a robot. `keep_going` is called from time to time, and may end the search.
 ///
 /// # Errors
 /// [`SearchError`] if the ring is too large to search.

@@ -152,7 +152,7 @@ pub(crate) struct PeriodFiring {
     refire: Micros,
     /// The number of the next period to be planned.
     period: u32,
-    /// Firing times of the present period, in order.
+    /// Firing times of the current period, in order.
     due: Vec<(Micros, u8)>,
     length: Micros,
     phase: Phase,
@@ -161,7 +161,7 @@ pub(crate) struct PeriodFiring {
     /// The index of the next firing.
     next: usize,
     start: Instant,
-    /// Time since each sensor's last firing at the planned start of the present period; `None` for sensors without one.
+    /// Time since each sensor's last firing at the planned start of the current period; `None` for sensors without one.
     before_us: Vec<Option<u64>>,
     enabled: [bool; MAX_SENSORS],
     paused: bool,

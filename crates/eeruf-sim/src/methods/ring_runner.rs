@@ -32,7 +32,7 @@ pub(crate) trait RingRunner: Send {
     fn stands_for(&self, sensor: u8) -> u8;
     /// Reports the robot's speed and rate of turn.
     fn moving(&mut self, _speed_mm_s: u32, _turn_mrad_s: u32, _now: Instant) {}
-    /// Changes to another schedule, for the same number of sensors, at the end of the present period.
+    /// Changes to another schedule, for the same number of sensors, at the end of the current period.
     fn change_schedule(&mut self, _schedule: &AnySchedule) -> Result<(), ChangeError> {
         Err(ChangeError::Fixed)
     }
@@ -170,7 +170,7 @@ pub(crate) struct RingStart<'s> {
 pub(super) struct Way {
     /// Returns the schedule with which a robot's ring starts; for dither it has only the lags.
     pub(super) schedule: fn(&Robot, Option<&AnySchedule>) -> Result<AnySchedule, ScheduleError>,
-    /// Returns the ring's plan, given that schedule.
+    /// Returns the ring's plan for the schedule with which it starts.
     pub(super) plan: fn(&Robot, AnySchedule) -> Result<FiringPlan, StartError>,
     /// Starts the ring.
     pub(super) ring: fn(&RingStart<'_>) -> Started,

@@ -171,7 +171,7 @@ impl Lane {
         Self { sets, set: 0, place: 0, due, pending: 0, cycle: None, silent: None }
     }
 
-    /// Returns the sensor of the present set that fires next; `None` while the set listens.
+    /// Returns the sensor of the current set that fires next; `None` while the set listens.
     fn next(&self) -> Option<u8> {
         self.sets.get(self.set)?.get(self.place).copied()
     }
@@ -213,7 +213,7 @@ impl LanePlan {
         first.map(|(index, _)| index).filter(|&index| self.period_end().has_reached(self.lanes[index].due))
     }
 
-    /// Skips disabled sensors, and moves on to the next set once all of the present one have ended, no sooner than
+    /// Skips disabled sensors, and moves on to the next set once all of the current one have ended, no sooner than
     /// `soonest`.
     fn settle(&mut self, index: usize, soonest: Instant) {
         let enabled = self.enabled;

@@ -124,7 +124,7 @@ impl Entry {
     }
 
     /// Simulates a world whose robots are [`robot`](Self::robot)s of this entry. `stop` ends it from another thread. So
-    /// does `keep_going` when it returns `false`; it is sometimes called with the passed share of the time.
+    /// does `keep_going` when it returns `false`; it is called from time to time with the elapsed share of the time.
     ///
     /// # Errors
     /// Errors of [`simulate`](crate::simulate()), and of the caller's own code.

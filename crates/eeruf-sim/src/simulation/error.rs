@@ -105,7 +105,7 @@ pub enum SimulationError {
         /// Number of sensors of the robot.
         sensors: usize,
     },
-    /// The object of a fault has no room in the scene at a time.
+    /// The object of a fault has no room in the scene at some time.
     Fault {
         /// Time, in seconds.
         at_s: f64,

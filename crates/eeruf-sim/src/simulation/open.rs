@@ -139,8 +139,8 @@ impl Simulation {
     }
 
     /// Advances the time, and returns the readings of all firings whose windows have closed since. `keep_going` is
-    /// sometimes called with the passed share; if it returns `false`, the step ends with [`SimulationError::Stopped`]
-    /// and may be repeated.
+    /// called from time to time with the elapsed share; if it returns `false`, the step ends with
+    /// [`SimulationError::Stopped`] and may be repeated.
     ///
     /// # Errors
     /// A time that is negative or above 10^9 s, a robot that has moved out of the scene's reach, or too little memory.
@@ -319,7 +319,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Shares the paths of the present scene, until it changes, with simulations in which robots move alike and differ
+    /// Shares the paths of the current scene, until it changes, with simulations in which robots move alike and differ
     /// only in their firing and listening.
     pub(crate) fn share(&mut self, shared: Arc<SharedPaths>) {
         self.events.share(shared);

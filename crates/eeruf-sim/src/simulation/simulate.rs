@@ -26,8 +26,8 @@ pub fn simulate(world: &World, method: Method, options: &Options) -> Result<Read
     simulate_while(world, method, options, |_| true)
 }
 
-/// Simulates like [`simulate`], and sometimes calls `keep_going` with the passed share of the time, 0 to 1. If it
-/// returns `false`, the simulation stops with [`SimulationError::Stopped`].
+/// Simulates like [`simulate`], and calls `keep_going` from time to time with the elapsed share of the time, 0 to 1. If
+/// it returns `false`, the simulation stops with [`SimulationError::Stopped`].
 ///
 /// # Errors
 /// See [`simulate`].

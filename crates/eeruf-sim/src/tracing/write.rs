@@ -1,4 +1,4 @@
-//! Writing of the found paths in order, with directions and amplitudes. In a room each path of the plan is written once
+//! Writes the found paths in order, with directions and amplitudes. In a room each path of the plan is written once
 //! for each vertical path between the heights.
 
 use super::audibility::Audibility;

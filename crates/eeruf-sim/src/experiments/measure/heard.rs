@@ -78,7 +78,7 @@ pub enum Control {
 }
 
 impl Control {
-    /// Controls that are a sound way with a planted flaw.
+    /// Controls made from a good way by planting a flaw.
     pub const PLANTED: [Self; 3] = [Self::Masked, Self::Late, Self::Foreign];
 
     /// Returns the lifetime of a belief under a control, and the time for which nothing replaces it, in seconds.

@@ -1,4 +1,5 @@
-//! Things that appear before a robot: their choice, their places, and the sensors that would read them alone.
+//! Things that appear before a robot: their choice, their places, and the sensors that would read them if no other
+//! fired.
 
 use core::f64::consts::FRAC_PI_2;
 

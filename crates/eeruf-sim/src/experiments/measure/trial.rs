@@ -45,7 +45,7 @@ const LOOK_S: f64 = 0.01;
 pub enum Moving {
     /// The robot stands still.
     Standing,
-    /// The robot drives to and fro along its free way.
+    /// The robot drives back and forth along its free way.
     Driving,
     /// The robot turns on the spot.
     Turning,

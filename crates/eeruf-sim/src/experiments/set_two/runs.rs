@@ -126,8 +126,8 @@ pub struct Drive {
     pub run: Run,
 }
 
-/// Drives one course by one method. `keep_going` is sometimes called with the passed share of the time limit, 0 to 1;
-/// if it returns `false`, the drive stops.
+/// Drives one course by one method. `keep_going` is called from time to time with the elapsed share of the time limit,
+/// 0 to 1; if it returns `false`, the drive stops.
 ///
 /// # Errors
 /// [`ExperimentError`] for an invalid ring, and if `keep_going` stopped it.

@@ -187,7 +187,7 @@ impl Vfh {
 
     /// Returns the speed ahead in m/s and the rate of turn in rad/s for driving from a pose to a target. The rate is
     /// `turn_gain` rad/s per radian of steering error, at most `turn_most_rad_s`; the larger the error, the lower the
-    /// speed. A blocked robot stops and turns on the spot. `turn_rad_s` is the present rate of turn.
+    /// speed. A blocked robot stops and turns on the spot. `turn_rad_s` is the current rate of turn.
     ///
     /// ```
     /// use eeruf_sim::{Himm, Point, Pose, Vfh};

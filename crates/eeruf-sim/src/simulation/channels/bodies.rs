@@ -12,7 +12,7 @@ use crate::{
 /// are left out: the scene's own objects come first, then the sides and discs of all robots in order.
 #[derive(Clone)]
 pub(in crate::simulation) struct Bodies {
-    /// For each robot, its first side and its disc.
+    /// For each robot, the numbers of its first side and of its disc.
     first: Vec<[u32; 2]>,
     any: bool,
     /// Recent scenes of the world with these sides; they stay the same while robots stand still.

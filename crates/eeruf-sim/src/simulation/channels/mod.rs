@@ -62,7 +62,7 @@ const EDGE_TURN: f64 = 0.375;
 /// All channels of a world.
 #[derive(Clone)]
 pub(crate) struct Channels {
-    /// The present world; earlier worlds differed only in their scenes.
+    /// The current world; earlier worlds differed only in their scenes.
     world: Arc<World>,
     /// Identity of each sensor of the world.
     ids: Vec<SensorId>,
@@ -184,7 +184,7 @@ impl Channels {
         heard.min().unwrap_or(NEVER)
     }
 
-    /// Shares the paths of the present scene with other simulations until the scene changes.
+    /// Shares the paths of the current scene with other simulations until the scene changes.
     pub(crate) fn share(&mut self, shared: Arc<SharedPaths>) {
         self.shared = Some(shared);
     }

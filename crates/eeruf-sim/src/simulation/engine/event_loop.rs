@@ -157,7 +157,7 @@ impl<K: Kinematics> EventLoop<K> {
     }
 
     /// Runs until a time, in true nanoseconds; events at that time wait for the next call. `keep_going` is sometimes
-    /// called with the passed share of the whole time. Returns true if more events follow.
+    /// called with the elapsed share of the whole time. Returns true if more events follow.
     pub(crate) fn run_until(
         &mut self,
         until: u64,
@@ -266,7 +266,7 @@ impl<K: Kinematics> EventLoop<K> {
         Ok(())
     }
 
-    /// Shares the paths of the present scene with other simulations.
+    /// Shares the paths of the current scene with other simulations.
     pub(crate) fn share(&mut self, shared: Arc<SharedPaths>) {
         self.channels.share(shared);
     }

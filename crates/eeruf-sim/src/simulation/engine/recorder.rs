@@ -1,4 +1,4 @@
-//! Recording of readings under a method: echo, cause, and the reading that the sensor would have had alone.
+//! Records the readings under a method: echo, cause, and the reading that the sensor would have had alone.
 
 use std::collections::VecDeque;
 

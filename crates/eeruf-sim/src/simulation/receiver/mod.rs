@@ -154,7 +154,7 @@ pub(crate) struct Receiver {
     open: u64,
     /// Time until which the sensor listens: the end of the window, or the next arrival if it reports one echo.
     until: u64,
-    /// Time up to which arrivals matter only to the present firing.
+    /// Time up to which arrivals matter only to the current firing.
     own_until: u64,
     /// Time of the last firing.
     pub(crate) fired: u64,
@@ -222,7 +222,7 @@ impl Receiver {
         self.pending.drain(..held);
     }
 
-    /// Inserts an arrival, which is never before the present moment.
+    /// Inserts an arrival, which is never before the current time.
     #[inline]
     pub(crate) fn insert(&mut self, arrival: Arrival, hearing: &Hearing) {
         let late = hearing.late(&arrival, self.fired);

@@ -1,4 +1,4 @@
-//! Merging of paths over the two ends of one wall that differ by less than a burst: they are heard as one, by Fresnel's
+//! Merges paths over the two ends of one wall that differ by less than a burst: they are heard as one, by Fresnel's
 //! integral between them.
 
 use super::{EdgePath, EdgeQuery, EdgeSearch, MOST};

@@ -1,4 +1,4 @@
-//! Sorting of found paths by receiver, then by length, without duplicates.
+//! Sorts the found paths by receiver, then by length, and removes duplicates.
 
 mod found;
 

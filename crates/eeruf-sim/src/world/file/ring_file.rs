@@ -15,7 +15,7 @@ use crate::{
 /// A reader of ring files: makes the robot from the file's path and text.
 pub type ReadRing = fn(&Path, &str) -> Result<RobotRing, FileError>;
 
-/// Fails: the reader for callers without one.
+/// Always fails: it stands in for callers that have no reader of ring files.
 pub(super) fn no_reader(file: &Path, _: &str) -> Result<RobotRing, FileError> {
     Err(FileError::new(
         file,

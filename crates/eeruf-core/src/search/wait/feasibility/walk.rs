@@ -18,7 +18,7 @@ pub(super) struct Style {
     pub(super) backwards: bool,
 }
 
-/// The trail: two words for each branch, the branch and the number of its alternatives that were tried.
+/// A walk. Its trail has two words for each branch: the branch, and how many of its alternatives were tried.
 pub(super) struct Feasibility<'p, 'm> {
     problem: &'p Problem<'p>,
     sensors: usize,

@@ -137,9 +137,9 @@ class SetOneFigures(Result):
     phantom: Spread | None
     """Share of the time in which the latest accepted reading is foreign sound."""
     too_far: Spread | None
-    """Share of the time in which the latest accepted reading is an own later echo, or silence where there is an echo."""
+    """Share of the time in which a sensor's latest accepted reading is its own later echo, or silence despite one."""
     faint: Spread | None
-    """Share of the time in which the latest accepted reading is an own nearer echo, faint but real."""
+    """Share of the time in which a sensor's latest accepted reading is its own nearer echo, faint but real."""
     right_echoes_per_s: Spread | None
     """Accepted echoes per second that were right, over all sensors."""
     starved: float
@@ -232,9 +232,9 @@ class PlacingRun(Result):
     phantom: float
     """Share of the time in which the latest accepted reading is foreign sound."""
     too_far: float
-    """Share of the time in which the latest accepted reading is an own later echo, or silence where there is an echo."""
+    """Share of the time in which a sensor's latest accepted reading is its own later echo, or silence despite one."""
     faint: float
-    """Share of the time in which the latest accepted reading is an own nearer echo, faint but real."""
+    """Share of the time in which a sensor's latest accepted reading is its own nearer echo, faint but real."""
     blind: float
     """Number of sensors of one robot that were right in fewer than 5 % of their firings."""
 
@@ -581,9 +581,9 @@ class SetThreeFigures(Result):
     phantom: Spread | None
     """Share of the time in which the latest accepted reading is foreign sound."""
     too_far: Spread | None
-    """Share of the time in which the latest accepted reading is an own later echo, or silence where there is an echo."""
+    """Share of the time in which a sensor's latest accepted reading is its own later echo, or silence despite one."""
     faint: Spread | None
-    """Share of the time in which the latest accepted reading is an own nearer echo, faint but real."""
+    """Share of the time in which a sensor's latest accepted reading is its own nearer echo, faint but real."""
     blind: Spread | None
     """Number of sensors that were right in fewer than 5 % of their firings."""
 

@@ -150,9 +150,9 @@ class Summary(Result):
     phantom: float
     """Share of the time in which the latest accepted reading is foreign sound."""
     too_far: float
-    """Share of the time in which the latest accepted reading is an own later echo, or silence where there is an echo."""
+    """Share of the time in which a sensor's latest accepted reading is its own later echo, or silence despite one."""
     faint: float
-    """Share of the time in which the latest accepted reading is an own nearer echo, faint but real."""
+    """Share of the time in which a sensor's latest accepted reading is its own nearer echo, faint but real."""
     right_echoes_per_s: float
     """Accepted echoes per second that were right, over all sensors."""
     age_ms: float

@@ -47,7 +47,7 @@ pub enum RequirementsError {
         /// Number of sensors.
         sensors: usize,
     },
-    /// A sensor fires together with two groups.
+    /// A sensor belongs to two groups that fire together.
     TwoGroups {
         /// The sensor, from 0.
         sensor: u8,

@@ -137,7 +137,7 @@ fn told(
     silence: Silence,
     now: Instant,
 ) {
-    /// Factor of `v = g c / 2`, in mm/s, for a rate in microseconds for each millisecond, as in logs.
+    /// The factor `c / 2` of `v = g c / 2`, for v in mm/s and g in microseconds for each millisecond, as in logs.
     const MM_S: f32 = 171.5;
     if let Some(g) = of.g_us_ms {
         ring.moving((g * MM_S).round() as u32, 0, now);

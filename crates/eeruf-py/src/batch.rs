@@ -389,7 +389,7 @@ impl Batch {
         format!("<Batch: {} worlds of {} sensors>", self.size, self.sensors)
     }
 
-    /// Copies the worlds in their present states; the copy steps on its own threads.
+    /// Copies the worlds in their current states; the copy steps on its own threads.
     fn __copy__(&self, py: Python<'_>) -> PyResult<Self> {
         let copied =
             py.detach(|| Ok::<_, PyErr>(self.worlds.get()?.iter().map(Member::copy).collect::<Option<_>>()))?;

@@ -61,7 +61,7 @@ pub(crate) struct FileObject<T> {
 }
 
 impl<T: Send + 'static> Work<T> {
-    /// Starts work; the file object, if any, is read from its present position.
+    /// Starts work; the file object, if any, is read from its current position.
     pub(crate) fn begin(
         py: Python<'_>,
         file: Option<&Bound<'_, PyAny>>,

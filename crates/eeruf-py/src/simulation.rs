@@ -175,7 +175,7 @@ impl Simulation {
         Arc::clone(&self.calls.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
-    /// Locks the simulation without holding the interpreter lock, for which its present holder may be waiting.
+    /// Locks the simulation without holding the interpreter lock, for which its current holder may be waiting.
     pub(crate) fn lock(&self) -> PyResult<MutexGuard<'_, UnderWay>> {
         if *self.stepping.lock().unwrap_or_else(PoisonError::into_inner) == Some(thread::current().id()) {
             let why = "a simulation under way; expected its firing and its filter to leave it alone";
@@ -431,7 +431,7 @@ impl Simulation {
         })
     }
 
-    /// Change the schedule of a robot's ring at the end of its present period, late enough to keep the intervals of
+    /// Change the schedule of a robot's ring at the end of its current period, late enough to keep the intervals of
     /// both. Readings before and after the change are not compared.
     ///
     /// Args:

@@ -134,7 +134,7 @@ settings! {
     ///     grid: an ``eeruf.nav.Himm``.
     ///     pose: where the robot is, (x, y, heading) in metres and radians.
     ///     target: where it should go, (x, y) in metres.
-    ///     turn_rad_s: its present rate of turn, in rad/s, -50 to 50.
+    ///     turn_rad_s: its current rate of turn, in rad/s, -50 to 50.
     ///     turn_gain: the rate of turn for a steering error of one radian, in rad/s, 0 to 100.
     ///
     /// Returns:

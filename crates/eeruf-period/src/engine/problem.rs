@@ -207,7 +207,7 @@ impl Problem {
         [self.window.clone(), self.separation.clone(), gaps]
     }
 
-    /// Returns true if for one kind of limit no value applies to half of the sensors or pairs.
+    /// Returns true if some kind of limit has no value that half of the sensors or pairs share.
     pub(crate) fn is_mixed(&self) -> bool {
         self.limits().into_iter().any(|limits| most_common(&limits).is_some_and(|(_, alike)| 2 * alike < limits.len()))
     }

@@ -366,7 +366,7 @@ impl Run {
         Ok(true)
     }
 
-    /// Records the times at the shortest period at which they serve.
+    /// Records these times, with the shortest period at which they are a valid schedule.
     fn improve(&mut self, fire: FiringTimes) {
         self.found.period = period_of(self.search.problem(), &fire).max(self.found.bound);
         self.found.fire = fire;

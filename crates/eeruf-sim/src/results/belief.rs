@@ -23,10 +23,11 @@ pub struct BeliefShares {
     pub unknown: f64,
     /// Share of time with a belief in foreign or stale sound.
     pub phantom: f64,
-    /// Share of time with an own echo later than the reference, or with silence where the sensor alone hears an echo.
+    /// Share of time with one of the sensor's echoes later than the reference, or with silence where the sensor alone
+    /// hears an echo.
     pub too_far: f64,
-    /// Share of time with an own echo that is earlier than the reference, or that comes although the sensor alone hears
-    /// none: faint but real.
+    /// Share of time with one of the sensor's echoes that is earlier than the reference, or that comes although the
+    /// sensor alone hears none: faint but real.
     pub faint: f64,
 }
 

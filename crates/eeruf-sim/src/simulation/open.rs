@@ -48,7 +48,7 @@ pub struct Simulation {
     now: u64,
     /// Time before which all events have happened.
     happened: u64,
-    /// The world with its present scene, and the time of the last change.
+    /// The world with its current scene, and the time of the last change.
     place: (Arc<World>, u64),
     /// End of the time for which firings are reported.
     end: u64,
@@ -259,7 +259,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Changes a robot's schedule at the end of its present period, late enough to keep the intervals of both. Readings
+    /// Changes a robot's schedule at the end of its current period, late enough to keep the intervals of both. Readings
     /// before and after the change are not compared.
     ///
     /// The robot does not exist; the method has no such schedule (immediate refiring, dither, flow, adaptive, the
@@ -370,7 +370,7 @@ impl Simulation {
         &self.world
     }
 
-    /// Returns the world with its present scene, and the time in seconds since which firings have used it; see
+    /// Returns the world with its current scene, and the time in seconds since which firings have used it; see
     /// [`change_scene`](Self::change_scene).
     pub fn world_now(&self) -> (&Arc<World>, f64) {
         (&self.place.0, self.place.1 as f64 * 1e-9)

@@ -58,7 +58,7 @@ pub(super) struct Thing {
     walls: Vec<Wall>,
 }
 
-/// Statistics of drawing things.
+/// Counts of the things drawn at random.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Draws {
     /// Number of things that fitted.

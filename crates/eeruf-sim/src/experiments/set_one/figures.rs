@@ -50,7 +50,8 @@ pub struct Figures {
     pub unknown: Option<Spread>,
     /// Share of the time in which foreign sound is believed.
     pub phantom: Option<Spread>,
-    /// Share of the time in which an own later echo, or free space, is believed although something is nearer.
+    /// Share of the time in which one of the sensor's own later echoes, or free space, is believed although something
+    /// is nearer.
     pub too_far: Option<Spread>,
     /// Share of the time in which one of the sensor's own nearer echoes is believed.
     pub faint: Option<Spread>,

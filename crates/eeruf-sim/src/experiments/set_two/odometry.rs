@@ -55,7 +55,7 @@ impl Odometry {
         &self.state.pose
     }
 
-    /// Records a short motion of the platform, and its present speeds.
+    /// Records a short motion of the platform, and its current speeds.
     pub(super) fn drove(&mut self, platform: &Driven, for_s: f64) {
         let (way_m, turned) = (platform.speed_m_s * for_s, platform.turn_rad_s * for_s);
         let aside_m = 0.5 * TRACK_M * turned;

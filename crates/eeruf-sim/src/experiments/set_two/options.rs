@@ -36,14 +36,14 @@ pub struct SetTwoOptions {
     pub odometry: bool,
     /// `T_delta`. With odometry it need not cover motion; the smaller it is, the fewer readings agree by accident.
     pub t_delta: Micros,
-    /// Effects in the lab. The default is [`Physics::DEFAULT`].
+    /// The simulated effects in the lab. The default is [`Physics::DEFAULT`].
     pub physics: Physics,
     /// Floor and ceiling of the lab. The default is none: it is flat.
     pub room: Option<Room>,
     /// The gain of the robot's receivers. The default is [`GainProfile::Constant`].
     pub gain: GainProfile,
-    /// True if robots have bodies that block sound and the platform: the platform a square with the ring on its edge,
-    /// the other robot the disc of its ring. The default is false, as when the pilots were tuned.
+    /// True if robots have bodies that block sound and the platform: the platform's is a square with the ring on its
+    /// edge, and the other robot's is the disc of its ring. The default is false, as when the pilots were tuned.
     pub bodies: bool,
     /// Errors of the platform's odometry.
     pub odometry_noise: OdometryNoise,

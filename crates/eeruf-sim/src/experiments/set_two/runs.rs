@@ -37,7 +37,7 @@ pub struct SetTwo {
     pub first: u64,
     /// The pilot, see [`Pilots::as_str`](super::Pilots::as_str).
     pub pilot: &'static str,
-    /// Effects in the lab.
+    /// The simulated effects in the lab.
     pub physics: Physics,
     /// The height and the robot's gain.
     #[serde(flatten)]

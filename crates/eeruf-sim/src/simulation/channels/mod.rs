@@ -303,7 +303,7 @@ impl Channels {
         Ok(())
     }
 
-    /// Finds the paths from an emitter to all receivers that hear it, at their present positions.
+    /// Finds the paths from an emitter to all receivers that hear it, at their current positions.
     fn snapshot(&mut self, emitter: usize, receivers: &[usize]) -> Result<Snapshot, PathsError> {
         let mut snapshot = Snapshot { poses: self.poses.clone(), groups: vec![] };
         for listeners in self.hearing(emitter, receivers) {

@@ -52,7 +52,7 @@ impl Channel {
     }
 }
 
-/// Returns true if sound that reaches a sensor within a slack of a time may matter; both in true nanoseconds.
+/// Returns true if sound that reaches a sensor at a time, give or take a slack, may matter; both in true nanoseconds.
 pub(crate) type Arrives<'a> = &'a dyn Fn(usize, u64, u64) -> bool;
 
 /// Phase of sound that an edge returns towards its source, as a share of a turn: the phase of Keller's coefficient,

@@ -1,9 +1,8 @@
-"""A ring in the emulator, its serial line, the node, and ROS 2 and MAVLink as others implement them.
+"""A ring whose echo lines play edges, its serial line, the node, and ROS 2 and MAVLink as others implement them.
 
-The board runs the firmware of `firmware/hil` in QEMU, among walls that the simulator plays; what it says over its
-serial line goes through a cable that this test holds into a pseudo-terminal, from there the node reads it, and Cyclone
-DDS receives what the node publishes. All on the loopback interface, in a domain of its own. `cargo xtask ros2` sets the
-variables.
+The ring is `played_ring.rs`: the driver in Rust, in real time. Its frames go through a cable that this test holds into a
+pseudo-terminal, from there the node reads them, and Cyclone DDS receives what the node publishes. All on the loopback
+interface, in a domain of its own. `cargo xtask ros2` sets the variables.
 """
 
 import csv
@@ -12,7 +11,6 @@ import json
 import math
 import os
 import signal
-import socket
 import struct
 import subprocess
 import threading
@@ -45,12 +43,18 @@ from cyclonedds.topic import Topic
 from pymavlink import mavutil
 
 PROGRAM = os.environ["EERUF_PROGRAM"]
-HARNESS = os.environ["EERUF_HIL"]
-# The command that emulates the board; its serial line goes to the socket that SERIAL stands for.
-EMULATOR = json.loads(os.environ["EERUF_EMULATOR"])
-SCENE = "scenes/alcove-hc-sr04.toml"
-SENSORS = 8
-FAULTY = 2
+PLAYED_RING = os.environ["EERUF_PLAYED_RING"]
+SENSORS, FAULTY = 8, 2  # it counts from 0
+NEVER = 2**32 - 1
+# Edges of a module that hears nothing, and the lines of sensors that face a wall each.
+NOTHING = "+450 -38450"
+WALLS_US = [4000 + 1500 * sensor for sensor in range(SENSORS)]
+WALLS = [f"{sensor} +450 -{450 + us}" for sensor, us in enumerate(WALLS_US)]
+
+
+def metres(us):
+    return us * 343.2e-6 / 2
+
 
 @pytest.fixture(scope="module")
 def participant():
@@ -172,7 +176,7 @@ def unpacked(frame):
 
 @dataclass
 class Cable:
-    """Carries frames from the board's socket to a pseudo-terminal; some it swallows, in some it flips a bit."""
+    """Carries frames from the board to a pseudo-terminal; some it swallows, in some it flips a bit."""
 
     swallow: frozenset = frozenset()
     flip: frozenset = frozenset()
@@ -181,7 +185,7 @@ class Cable:
 
     def carry(self, board, line):
         count, rest = 0, b""
-        while more := board.recv(4096):
+        while more := os.read(board.fileno(), 4096):
             *frames, rest = (rest + more).split(b"\0")
             for frame in frames:
                 if count in self.swallow | self.flip:
@@ -202,27 +206,20 @@ def firings(contents):
 
 
 class Board:
-    """The ring in the emulator, at the pace of the clock on the wall, and the reference's readings."""
+    """The ring at the pace of the clock on the wall, and its readings."""
 
-    def __init__(self, processes, folder, line, faults, periods, cable):
-        address = str(folder / "board")
-        with socket.socket(socket.AF_UNIX) as listener:
-            listener.bind(address)
-            listener.listen()
-            listener.settimeout(PATIENCE_S)
-            emulator = [part.replace("SERIAL", f"unix:{address}") for part in EMULATOR]
-            command = [HARNESS, SCENE, *faults, str(periods), "--board", "lm3s6965", *emulator]
-            self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
-            processes.append(self.process)
-            board, _ = listener.accept()
-        self.thread = threading.Thread(target=cable.carry, args=(board, line))
+    def __init__(self, processes, line, lines, periods, stall_after, cable):
+        command = [PLAYED_RING, str(periods), str(stall_after), *lines]
+        self.process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        processes.append(self.process)
+        self.thread = threading.Thread(target=cable.carry, args=(self.process.stdout, line))
         self.thread.start()
 
     def readings(self):
-        """Readings of the ring on the host, which the harness has compared with the board's."""
-        said, errors = self.process.communicate(timeout=PATIENCE_S)
-        assert self.process.returncode == 0, errors
+        """Readings as the ring said them beside its serial line."""
         self.thread.join()
+        said = self.process.stderr.read().decode()
+        assert self.process.wait(timeout=PATIENCE_S) == 0, said
         return list(csv.DictReader(io.StringIO(said)))
 
 
@@ -237,17 +234,17 @@ class Mavlink:
             self.messages.append(message)
 
 
-def run(tmp_path, participant, processes, faults, periods, cable=None, **given):
-    """A ring with what the harness is asked for, for this many periods; the node, what the reference read, the cable, the log, and MAVLink."""
+def run(tmp_path, participant, processes, lines, periods, cable=None, stall_after=NEVER):
+    """A ring with these edges on its lines, for this many periods; the node, the readings, the log, and MAVLink."""
     cable, mavlink = cable or Cable(), Mavlink()
     line, terminal = os.openpty()
     tty.setraw(terminal)
     log = tmp_path / "log.csv"
     # Pictures come with failed sensors too: no autopilot arms here.
-    file = parameters(tmp_path, **{"mavlink_unanswered_as": "obstacle"} | given)
+    file = parameters(tmp_path, mavlink_unanswered_as="obstacle")
     outputs = ["--log", str(log), "--mavlink", mavlink.to]
     node = Node(participant, processes, "--params-file", file, "--port", os.ttyname(terminal), *outputs)
-    board = Board(processes, tmp_path, line, faults, periods, cable)
+    board = Board(processes, line, lines, periods, stall_after, cable)
     while board.process.poll() is None:
         node.take()
         mavlink.take()
@@ -266,7 +263,7 @@ def run(tmp_path, participant, processes, faults, periods, cable=None, **given):
     mavlink.take()
     os.close(line)
     os.close(terminal)
-    return node, readings, cable, log, mavlink
+    return node, readings, log, mavlink
 
 
 def expected_ranges(readings, hit, clear):
@@ -277,8 +274,8 @@ def expected_ranges(readings, hit, clear):
         if (sensor, int(row["period"])) in hit:
             continue
         if kind == "accepted":
-            metres = int(row["t_echo_us"]) * 343.2e-6 / 2
-            expected[sensor].append(metres if metres <= 4.0 else clear)
+            distance = metres(int(row["t_echo_us"]))
+            expected[sensor].append(distance if distance <= 4.0 else clear)
         elif kind == "clear":
             expected[sensor].append(clear)
         elif kind == "too_early":
@@ -293,17 +290,22 @@ def assert_ranges(node, expected):
         assert len({(message.header.stamp.sec, message.header.stamp.nanosec) for message in heard}) == len(heard)
 
 
-def test_an_emulated_ring_and_its_faults_arrive_as_ros_2(
-    tmp_path, participant, processes
-):
+def test_ring_and_its_faults_arrive_as_ros_2(tmp_path, participant, processes):
     cable = Cable(swallow=frozenset(range(400, 460, 10)), flip=frozenset(range(405, 450, 10)))
-    node, readings, cable, log, mavlink = run(tmp_path, participant, processes, ["--one", "stuck"], 120, cable)
+    lines = list(WALLS)
+    # Stuck from the twentieth firing on; nothing; too close; in each phase the sound of the sensor that fires next.
+    lines[FAULTY] += f" / {WALLS[FAULTY][2:]}" * 18 + " / +450"
+    lines[3:6] = f"3 {NOTHING}", "4 +450 -560", "5 +450 -20450 / +450 -17450"
+    node, readings, log, mavlink = run(tmp_path, participant, processes, lines, 120, cable)
 
     hit = set(firings(cable.hit))
     assert len(cable.hit) == 11 and len(hit) >= 8
     expected = expected_ranges(readings, hit, math.inf)
-    # Enough to tell a ring from noise. One of the eight hears another sensor first in each phase.
-    assert sum(map(len, expected)) > 400 and sum(map(bool, expected)) >= SENSORS - 1
+    for sensor, (ranges, us) in enumerate(zip(expected, WALLS_US)):
+        right = {3: math.inf, 4: -math.inf}.get(sensor, metres(us))
+        assert all(distance == pytest.approx(right, abs=0.001) for distance in ranges), sensor
+        least, most = {FAULTY: (15, 18), 5: (0, 0)}.get(sensor, (110, 120))
+        assert least <= len(ranges) <= most, (sensor, len(ranges))
     assert_ranges(node, expected)
     messages = sum(node.ranges, [])
     assert {(round(message.min_range, 6), message.max_range) for message in messages} == {(0.02, 4.0)}
@@ -315,6 +317,7 @@ def test_an_emulated_ring_and_its_faults_arrive_as_ros_2(
     assert any(status.level == ERROR and "stuck line" in status.message for status in of(stuck))
     for sensor in {f"sensor {n + 1}" for n in range(SENSORS)} - {stuck}:
         assert not any("stuck" in status.message for status in of(sensor)), sensor
+    assert any(status.level == WARN and status.message.startswith("blind") for status in of("sensor 6"))
     line = of("serial line")
     assert any(status.level == WARN and status.message.startswith("dropped frames") for status in line)
     values = {value.key: value.value for value in line[-1].values}
@@ -324,7 +327,7 @@ def test_an_emulated_ring_and_its_faults_arrive_as_ros_2(
 
     rows = list(csv.DictReader(log.read_text().splitlines()[1:]))
     assert [(int(row["sensor"]), int(row["period"])) for row in rows] == firings(cable.carried)
-    assert log.read_text().startswith("# clock: lm3s6965, 32 bits\n")
+    assert log.read_text().startswith("# clock: played, 32 bits\n")
     diagnosed = subprocess.run([PROGRAM, "diagnose", str(log), "--json"], capture_output=True, text=True)
     assert diagnosed.returncode in (0, 1), diagnosed.stderr
     assert json.loads(diagnosed.stdout)
@@ -343,7 +346,7 @@ def assert_mavlink(mavlink, expected):
     for sensor, awaited in enumerate(expected):
         heard = [m for m in mavlink.messages if m.get_type() == "DISTANCE_SENSOR" and m.id == sensor]
         centimetres = {math.inf: 401, -math.inf: 2}
-        want = [centimetres.get(metres, 100 * metres) for metres in awaited]
+        want = [centimetres.get(distance, 100 * distance) for distance in awaited]
         assert [message.current_distance for message in heard] == pytest.approx(want, abs=0.8)
         if not awaited:
             continue
@@ -354,21 +357,22 @@ def assert_mavlink(mavlink, expected):
 
 
 @pytest.mark.parametrize(
-    ("fault", "about", "level", "message"),
+    ("line", "stall_after", "about", "level", "message"),
     [
-        ("stall", "timing", WARN, "late: a firing came"),
-        ("missing", f"sensor {FAULTY + 1}", ERROR, "missing: nothing comes from its line"),
+        (WALLS[FAULTY], 25, "timing", WARN, "late: a firing came"),
+        (str(FAULTY), NEVER, f"sensor {FAULTY + 1}", ERROR, "missing: nothing comes from its line"),
     ],
 )
 def test_a_late_board_and_a_missing_sensor_are_named(
-    tmp_path, participant, processes, fault, about, level, message
+    tmp_path, participant, processes, line, stall_after, about, level, message
 ):
-    node, readings, _, _, mavlink = run(tmp_path, participant, processes, ["--one", fault], 50)
+    lines = WALLS[:FAULTY] + [line] + WALLS[FAULTY + 1 :]
+    node, readings, _, mavlink = run(tmp_path, participant, processes, lines, 50, stall_after=stall_after)
     assert_ranges(node, expected_ranges(readings, set(), math.inf))
     assert any(r[about].level == level and r[about].message.startswith(message) for r in node.reports)
     pictures = [m for m in mavlink.messages if m.get_type() == "OBSTACLE_DISTANCE"]
     assert len(pictures) > 10
-    if fault == "missing":
+    if stall_after == NEVER:
         # The sector that the sensor looks into; what does not answer is an obstacle at the minimum.
         sector = (-45 * FAULTY % 360 + 20) % 360 // 5
         assert pictures[-1].distances[sector] == 2

@@ -80,8 +80,8 @@ enum Verb {
     Programs(arduino::Drawn),
     /// Build the wheel and test it: types, examples, and the same results as in Rust
     Python,
-    /// Run a ring on an emulated board, its serial line and the ROS 2 node, and listen with Cyclone DDS, Fast DDS and
-    /// pymavlink; build ros2/ with colcon
+    /// Run a ring whose echo lines play faults, its serial line and the ROS 2 node, and listen with Cyclone DDS, Fast
+    /// DDS and pymavlink; build ros2/ with colcon
     Ros2,
     /// Pack the Debian package of eeruf-ros2 with its systemd unit into target/deb
     Deb(deb::Plan),

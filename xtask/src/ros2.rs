@@ -1,5 +1,5 @@
-//! `cargo xtask ros2`: the ring of `firmware/hil` on an emulated board, its serial line, the node `eeruf-ros2`, and
-//! Cyclone DDS, Fast DDS and pymavlink, which must receive the ring's readings; then `ros2/` as a ROS 2 package.
+//! `cargo xtask ros2`: a ring whose echo lines play edges, its serial line, the node `eeruf-ros2`, and Cyclone DDS, Fast
+//! DDS and pymavlink, which must receive the ring's readings; then `ros2/` as a ROS 2 package.
 
 use std::path::{Path, PathBuf, absolute};
 use std::process::Command;
@@ -7,7 +7,7 @@ use std::process::Command;
 use anyhow::{Result, ensure};
 
 use crate::steps::{empty, need, output, run, skip};
-use crate::toolchain::built;
+use crate::toolchain::{built, example};
 
 /// Clients that listen, in their newest versions.
 const LISTENERS: [&str; 3] = ["cyclonedds", "pymavlink", "pytest"];
@@ -16,14 +16,12 @@ pub(crate) fn ros2() -> Result<()> {
     if !cfg!(target_os = "linux") {
         return skip("pseudo-terminals and sockets as Linux has them".to_owned());
     }
-    let emulator = crate::firmware::serial_board()?;
     let python = environment()?;
     let fast_dds = fast_dds();
     let mut tests = Command::new(python);
-    tests.args(["-m", "pytest", "-o", "pythonpath=tests/ros2", "tests/ros2"]).env("EERUF_EMULATOR", emulator);
-    for (program, variable) in [("eeruf-ros2", "EERUF_ROS2"), ("eeruf-hil", "EERUF_HIL"), ("eeruf", "EERUF_PROGRAM")] {
-        tests.env(variable, built(program)?);
-    }
+    tests.args(["-m", "pytest", "-o", "pythonpath=tests/ros2", "tests/ros2"]);
+    tests.env("EERUF_ROS2", built("eeruf-ros2")?).env("EERUF_PROGRAM", built("eeruf")?);
+    tests.env("EERUF_PLAYED_RING", example("played_ring")?);
     if let Ok(program) = &fast_dds {
         tests.env("EERUF_FAST_DDS", program);
     }

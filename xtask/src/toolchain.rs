@@ -120,9 +120,18 @@ pub(crate) fn lab() -> Result<PathBuf> {
 /// A binary of the workspace as built for the tests, with the features of all packages: other features would rebuild
 /// the dependencies. A test is built too, so that dependencies have the features that tests need.
 pub(crate) fn built(name: &str) -> Result<PathBuf> {
-    let build = ["build", "--quiet", "--locked", "--workspace", "--test", "line", "--bin", name];
+    build("--bin", name, "")
+}
+
+/// An example of the workspace, likewise.
+pub(crate) fn example(name: &str) -> Result<PathBuf> {
+    build("--example", name, "examples/")
+}
+
+fn build(kind: &str, name: &str, folder: &str) -> Result<PathBuf> {
+    let build = ["build", "--quiet", "--locked", "--workspace", "--test", "line", kind, name];
     run(Command::new("cargo").args(build))?;
-    Ok(absolute(format!("target/debug/{name}{EXE_SUFFIX}"))?)
+    Ok(absolute(format!("target/debug/{folder}{name}{EXE_SUFFIX}"))?)
 }
 
 #[cfg(test)]

@@ -103,8 +103,8 @@ pub use tracing::{
     VERTICAL_ORDER, reception, reception_along,
 };
 pub use world::{
-    AnySchedule, Clock, Fault, FaultKind, FiringTable, LineEdge, Motion, Noise, Random, ReadRing, Robot, RobotRing,
-    ScheduleFile, Sketch, World, WorldError, WorldParts, line_edges, ring_of, world_file,
+    AnySchedule, Clock, Fault, FaultKind, FiringTable, Motion, Noise, Random, ReadRing, Robot, RobotRing, ScheduleFile,
+    Sketch, World, WorldError, WorldParts, ring_of, world_file,
 };
 
 /// Doctest of the crate's README.

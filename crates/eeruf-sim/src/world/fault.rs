@@ -178,17 +178,6 @@ impl FaultKind {
     }
 }
 
-/// An edge of an echo line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub struct LineEdge {
-    /// Time in us.
-    pub at_us: u64,
-    /// True if the line rises.
-    pub high: bool,
-    /// True if the line changes without a report.
-    pub lost: bool,
-}
-
 impl Fault {
     /// Makes a fault that lasts from the beginning without an end, for all sensors of the first robot.
     pub const fn new(kind: FaultKind) -> Self {
@@ -312,52 +301,4 @@ pub(crate) fn scene_with(scene: &Scene, faults: &[Fault], time_s: f64) -> Result
         fault.obstacles(time_s, &mut walls, &mut poles);
     }
     Ok(Scene::new(walls, poles, scene.air())?.with_room(scene.room().copied())?)
-}
-
-/// Returns the edges, under these faults, of an echo line that would rise and fall at these times. The line answers by
-/// the width of a pulse; firings are counted from 1. A driver should handle the edges like those of its modules.
-///
-/// ```
-/// use eeruf_sim::{Fault, FaultKind, line_edges};
-/// let edges = |kind| -> Vec<(u64, bool)> {
-///     line_edges(&[Fault::new(kind)], 0, 2, 7, 1_450, 9_000).map(|edge| (edge.at_us, edge.high)).collect()
-/// };
-/// let glitch = edges(FaultKind::GlitchLow { after_us: 30, width_us: 5 });
-/// assert_eq!(glitch, [(1_450, true), (1_480, false), (1_485, true), (9_000, false)]);
-/// assert_eq!(edges(FaultKind::Stuck), [(1_450, true)]);
-/// assert_eq!(edges(FaultKind::Cut), []);
-/// ```
-pub fn line_edges(
-    faults: &[Fault],
-    robot: usize,
-    sensor: u8,
-    firing: u32,
-    rise_us: u64,
-    fall_us: u64,
-) -> impl Iterator<Item = LineEdge> {
-    let time_s = rise_us as f64 * 1e-6;
-    let edge = |at_us, high| LineEdge { at_us, high, lost: false };
-    let mut edges = vec![edge(rise_us, true), edge(fall_us, false)];
-    for fault in faults.iter().filter(|fault| fault.is_of(robot, sensor) && fault.is_at(time_s)) {
-        match fault.kind {
-            FaultKind::Missing | FaultKind::Cut => edges.clear(),
-            FaultKind::Stuck => edges.retain(|edge| edge.high),
-            FaultKind::LostRises { every } | FaultKind::LostFalls { every } => {
-                let high = matches!(fault.kind, FaultKind::LostRises { .. });
-                let lost = firing.is_multiple_of(every.max(1));
-                edges.iter_mut().filter(|edge| edge.high == high).for_each(|edge| edge.lost |= lost);
-            }
-            FaultKind::GlitchLow { after_us, width_us } | FaultKind::GlitchHigh { after_us, width_us } => {
-                let low = matches!(fault.kind, FaultKind::GlitchLow { .. });
-                let begins = if low { rise_us } else { fall_us } + u64::from(after_us);
-                let ends = begins + u64::from(width_us);
-                if !low || ends < fall_us {
-                    edges.extend([edge(begins, !low), edge(ends, low)]);
-                }
-            }
-            _ => {}
-        }
-    }
-    edges.sort_unstable();
-    edges.into_iter()
 }

@@ -18,7 +18,7 @@ pub use clock::{Clock, MAX_DRIFT_PPM};
 pub use eeruf_files::{AnySchedule, RobotRing, ScheduleFile};
 pub use error::WorldError;
 pub(crate) use fault::scene_with;
-pub use fault::{Fault, FaultKind, LineEdge, line_edges};
+pub use fault::{Fault, FaultKind};
 pub use file::{ReadRing, WorldParts, cover_motion, heading_rad, world_file};
 pub use motion::{MAX_SPEED, Motion};
 pub(crate) use noise::{FARTHEST, Normal};

@@ -9,12 +9,12 @@ mod tables;
 use std::path::{Path, PathBuf, absolute};
 use std::process::Command;
 
-use anyhow::{Context as _, Result, ensure};
+use anyhow::{Result, ensure};
 use fs_err as fs;
 
 use crate::measured;
 use crate::steps::{Steps, need, output, run, run_component, skip};
-use crate::toolchain::{built, cargo_for_target, is_debian, target_folder};
+use crate::toolchain::{cargo_for_target, is_debian, target_folder};
 
 struct Board {
     name: &'static str,
@@ -41,7 +41,7 @@ pub(crate) struct Plan {
     /// Put the tables into the file instead of comparing them
     #[arg(long)]
     write: bool,
-    /// Only on this board, and without the simulated world
+    /// Only on this board, and without the example of the C library
     #[arg(long, value_name = "NAME", conflicts_with = "write", value_parser = BOARDS.map(|board| board.name))]
     board: Option<String>,
 }
@@ -113,19 +113,6 @@ fn emulator(board: &Board, image: &Path, shift: u32) -> Command {
         .args(["-semihosting-config", "enable=on,target=native", "-kernel"])
         .arg(image);
     qemu
-}
-
-/// The command for the ring that sends frames over the board's serial line, as a JSON list, with `SERIAL` for the line.
-pub(crate) fn serial_board() -> Result<String> {
-    let [_, lm3s6965, ..] = &BOARDS;
-    need(&format!("{} --version", lm3s6965.qemu), "apt install qemu-system-arm")?;
-    build(lm3s6965, &["--package", "eeruf-hil-board", "--features", "serial", "--bin", "eeruf-serial-board"])?;
-    let image = absolute(image(lm3s6965, "eeruf-serial-board")?)?;
-    let image = image.to_str().context("the path of the clone is no text")?;
-    let line = ["-nographic", "-monitor", "none", "-serial", "SERIAL", "-icount", "shift=6,sleep=off"];
-    let rest = ["-semihosting-config", "enable=on,target=native", "-kernel", image];
-    let command = [&[lm3s6965.qemu][..], lm3s6965.machine, &line, &rest].concat();
-    Ok(format!("[{}]", command.iter().map(|part| format!("{part:?}")).collect::<Vec<_>>().join(",")))
 }
 
 fn qemu(board: &Board, image: &Path, shift: u32) -> Result<String> {
@@ -215,15 +202,4 @@ fn llvm(tool: &str, args: &[&str], image: &Path) -> Result<String> {
         Some(name) => output(Command::new(name).args(args).arg(image)),
         None => skip(format!("no llvm-{tool}; install llvm-22")),
     }
-}
-
-/// Runs the boards' rings in the simulated world, in lock step with the host's, and returns the tables.
-fn in_the_loop(program: &str, arguments: &[&str]) -> Result<String> {
-    let mut harness = Command::new(built("eeruf-hil")?);
-    harness.arg("scenes/alcove-hc-sr04.toml").args(arguments);
-    for board in &BOARDS {
-        let qemu = emulator(board, &image(board, program)?, 6);
-        harness.args(["--board", board.name]).arg(qemu.get_program()).args(qemu.get_args());
-    }
-    output(&mut harness)
 }

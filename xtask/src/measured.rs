@@ -16,9 +16,6 @@ const MEASURED: &str = "<!-- measured: ";
 /// The table that names the compiler of each board's figures.
 pub(crate) const COMPILERS: &str = "compilers";
 
-/// Part of the names of tables whose figures do not depend on the compiler.
-const SIMULATED: &str = "in a simulated world";
-
 /// Tolerance of a timing, as a share of the larger one and in addition: the emulator does not take every interrupt at
 /// the same instruction.
 const TIMING_SHARE: f64 = 0.1;
@@ -87,7 +84,7 @@ fn differences(
         differ.push(format!("{name}: {} lines; measured {}", expected.len(), measured.len()));
     }
     for (expected, measured) in expected.iter().zip(&measured) {
-        if !name.contains(SIMULATED) && !is_of_the_same_compiler(measured.first().unwrap_or(&"")) {
+        if !is_of_the_same_compiler(measured.first().unwrap_or(&"")) {
             continue;
         }
         let same = |(expected, measured): (&&str, &&str)| is_same(expected, measured);
@@ -134,8 +131,6 @@ mod tests {
             ["size: | microbit | 3564 |, measured | microbit | 3560 |"]
         );
         assert!(differences("size", &table(3564), &table(3560), |board| board != "microbit").is_empty());
-        // What a ring reads does not depend on the compiler.
-        assert!(!differences(SIMULATED, &table(8000), &table(7999), |_| false).is_empty());
     }
 
     #[test]

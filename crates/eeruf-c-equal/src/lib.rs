@@ -300,3 +300,8 @@ impl Default for Edges {
         Self::new()
     }
 }
+
+/// Doctest of the project's README, here because published crates cannot include that file.
+#[cfg(doctest)]
+#[doc = include_str!("../../../README.md")]
+struct Readme;

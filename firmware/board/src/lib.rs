@@ -27,9 +27,7 @@ pub mod say;
 #[cfg(any(board = "lm3s6965", board = "an386"))]
 mod systick_clock;
 
-use core::sync::atomic::{AtomicU32, Ordering};
-
-use eeruf_core::{Instant, Micros};
+use eeruf_core::Instant;
 
 pub use chip::*;
 #[cfg(target_arch = "arm")]
@@ -45,21 +43,9 @@ pub use cortex_m_rt::entry;
 #[cfg(target_arch = "riscv32")]
 pub use riscv_rt::entry;
 
-/// The reading of the clock at the start.
-static CLOCK_AT_START: AtomicU32 = AtomicU32::new(0);
-
-/// Sets the initial reading of the clock, so that tests see it wrap. Call it before the clock is read.
-pub fn begin_clock_at(start: Instant) {
-    CLOCK_AT_START.store(start.as_micros(), Ordering::Relaxed);
-}
-
 /// Reads the clock.
 pub fn now() -> Instant {
-    instant_of(running())
-}
-
-fn instant_of(running: Micros) -> Instant {
-    Instant::from_micros(CLOCK_AT_START.load(Ordering::Relaxed)) + running
+    Instant::from_micros(running().as_micros())
 }
 
 /// Proof that an image cannot panic: its panic handler calls a function that does not exist. If any path to a panic is

@@ -32,26 +32,6 @@ const MODE_A: usize = 0x004;
 const INTERRUPT_MASK: usize = 0x018;
 const LOAD_A: usize = 0x028;
 
-const UART: usize = 0x4000_C000;
-const UART_FLAGS: Register = Register::at(UART, 0x018);
-const UART_LINE: Register = Register::at(UART, 0x02C);
-const UART_CONTROL: Register = Register::at(UART, 0x030);
-const UART_CLOCKS: Register = Register::at(0x400F_E000, 0x104);
-
-/// Opens the first serial line for sending: 8 bits, no parity. The emulated one has no speed.
-pub fn open_line() {
-    UART_CLOCKS.write(1);
-    // Eight bits, with its queue of 16 bytes.
-    UART_LINE.write(0b111_0000);
-    UART_CONTROL.write(1 << 8 | 1);
-}
-
-/// Sends a byte, and waits while the line's queue is full.
-pub fn send(byte: u8) {
-    while UART_FLAGS.read() & 1 << 5 != 0 {}
-    Register::at(UART, 0).write(byte.into());
-}
-
 /// Starts clock and interrupts.
 pub fn start() {
     RCC2.write(1 << 31 | (200 / TIMER_TICKS_PER_US - 1) << 23);

@@ -56,7 +56,7 @@ pub(crate) fn running() -> Micros {
 
 /// Sets the alarm, replacing any other. If `at` has passed, it goes off at once.
 pub fn set_alarm(at: Instant) {
-    Register::at(TIMER0, CC_0).write(at.since(crate::instant_of(Micros::ZERO)).as_micros());
+    Register::at(TIMER0, CC_0).write(at.as_micros());
     // The compare register only fires when the counter reaches it.
     if crate::now().has_reached(at) {
         pend_alarm();

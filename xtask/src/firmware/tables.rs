@@ -2,7 +2,7 @@
 
 use anyhow::{Context as _, Result, bail};
 
-use super::{BOARDS, Board, build, c_example, cargo, expect, in_the_loop, on_target_tests, run_image, sections, stack};
+use super::{BOARDS, Board, build, c_example, cargo, expect, on_target_tests, run_image, sections, stack};
 use crate::measured::{self, Tables};
 use crate::toolchain::{DEBIAN_RUSTC, is_debian, most_bytes, version_of};
 
@@ -20,7 +20,7 @@ const FLASH: u64 = 5468;
 const RAM: u64 = 12 * 32 + 92;
 const STACK: u64 = 624;
 
-/// Returns the tables of all boards or of one, and exceeded budgets. The simulated world needs all boards.
+/// Returns the tables of all boards or of one, and exceeded budgets.
 pub(super) fn measure(only: Option<&str>) -> Result<(Tables, Vec<String>)> {
     let boards = || BOARDS.iter().filter(|board| only.is_none_or(|only| only == board.name));
     let mut tables = Tables::new();
@@ -99,8 +99,6 @@ pub(super) fn measure(only: Option<&str>) -> Result<(Tables, Vec<String>)> {
     }
     if only.is_none() {
         c_example(lm3s6965)?;
-        tables.insert("in a simulated world", in_the_loop("eeruf-hil-board", &[])?);
-        tables.insert("flow in a simulated world", in_the_loop("eeruf-hil-flow", &["--flow"])?);
     }
     let all = [
         (measured::COMPILERS, compilers),

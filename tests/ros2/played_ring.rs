@@ -151,14 +151,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         let frame = event.and_then(|event| recorder.event(&event, now, |sensor| ring.health(sensor) as u8, 0));
         stdout.write_all(frame.as_ref().map_or(&[], |frame| frame.as_bytes()))?;
         match event {
-            Some(RingEvent::Fire { .. }) => {}
             Some(RingEvent::Reading(reading)) => {
                 let t_echo = reading.t_echo.map(|t_echo| t_echo.as_micros().to_string()).unwrap_or_default();
                 eprintln!("{},{},{},{t_echo}", reading.sensor, reading.period, reading.kind);
             }
             Some(RingEvent::PeriodEnded(stats)) if stats.period + 1 == periods => break,
             Some(RingEvent::PeriodEnded(stats)) if stats.period == stall_after => lines.borrow_mut().now_us += STALL_US,
-            Some(RingEvent::PeriodEnded(_)) => {}
+            Some(RingEvent::Fire { .. } | RingEvent::PeriodEnded(_)) => {}
             None => {
                 stdout.flush()?;
                 let mut lines = lines.borrow_mut();

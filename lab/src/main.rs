@@ -1,4 +1,4 @@
-//! The lab: measurements that the documents quote, and searches whose results are in the sources.
+//! The lab: measurements that the documents quote.
 //!
 //! `cargo lab` lists them. None of it is published or needed to use eeruf.
 
@@ -15,7 +15,6 @@ mod narrow_panels;
 mod rust_side;
 mod shortest_periods;
 mod time_paths;
-mod tune;
 mod uneven_rings;
 
 use std::error::Error;
@@ -28,7 +27,7 @@ type Answer = Result<(), Box<dyn Error>>;
 /// A command: its name, arguments and output.
 type Command = (&'static str, &'static str, &'static str, fn(&[String]) -> Answer);
 
-const COMMANDS: [Command; 13] = [
+const COMMANDS: [Command; 12] = [
     ("constant-depth", "", "angles at which a wall is heard, by distance and gain", constant_depth::main),
     (
         "diagnose-places",
@@ -60,7 +59,6 @@ const COMMANDS: [Command; 13] = [
         shortest_periods::main,
     ),
     ("time-paths", "", "time of the path finder", time_paths::main),
-    ("tune", "[--check]", "settings of the experiments, into the sources (an hour)", tune::main),
     ("uneven-rings", "[RINGS [SECONDS [FIRST]]]", "random rings for a race with peers", uneven_rings::main),
 ];
 

@@ -15,7 +15,7 @@ pub struct MultiEcho {
 }
 
 impl MultiEcho {
-    /// The best settings of `cargo lab tune`'s grid, on alcoves below 2,000, by the sum of wrong and lost readings.
+    /// The best settings of a grid, on alcoves below 2,000, by the sum of wrong and lost readings.
     pub const TUNED: Self = Self { consecutive: 2, t_delta: Micros::new(200) };
 
     /// Returns the robot with these settings.

@@ -17,6 +17,6 @@ pub use course::{Course, POLE_RADIUS_M, ROOM_M, SECOND_AHEAD, SECOND_BEHIND};
 pub use figures::Figures;
 pub use odometry::OdometryNoise;
 pub use options::SetTwoOptions;
-pub use pilots::{Pilots, UnknownPilot, steered_as};
+pub use pilots::{Pilots, UnknownPilot};
 pub use run::{Cell, Ending, Run, TrackPoint};
 pub use runs::{Drive, MULTI_ECHO_CONSECUTIVE, SetTwo, SpeedStep, drive, set_two, speed_sweep};

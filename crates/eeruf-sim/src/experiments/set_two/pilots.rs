@@ -13,8 +13,8 @@ use crate::{
 #[derive(Clone, Copy, Debug, PartialEq, Default)]
 #[non_exhaustive]
 pub enum Pilots {
-    /// Each method has its own pilot, the default. All were found by `cargo lab tune` with the same effort, on courses
-    /// below 2,000, scored equally alone, behind a second robot and ahead of one.
+    /// Each method has its own pilot, the default. All were found by a search with the same effort, on courses below
+    /// 2,000, scored equally alone, behind a second robot and ahead of one.
     #[default]
     Own,
     /// One pilot for all, which an earlier search optimised mainly for `eeruf`. Its figures show the success of each
@@ -58,7 +58,7 @@ impl Pilots {
 
 /// Returns the method whose pilot is used. A method that fires like another uses that method's pilot; any other method
 /// without its own uses the pilot of one by one.
-pub fn steered_as(method: Method) -> Method {
+fn steered_as(method: Method) -> Method {
     match method {
         Method::AdaptiveMultiEcho => Method::MultiEcho,
         Method::FlowMultiEcho => Method::Flow,

@@ -4,7 +4,6 @@
 mod build;
 mod line_faults;
 mod loads;
-mod newping;
 mod pace;
 mod programs;
 mod real_log;
@@ -12,13 +11,15 @@ mod survey;
 mod tables;
 mod world;
 
+use std::panic::resume_unwind;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
 
 use anyhow::{Context as _, Result};
 use fs_err as fs;
 
-pub(crate) use self::newping::newping;
 pub(crate) use self::programs::{Drawn, programs};
 use crate::steps::{Steps, command, empty, run};
 
@@ -38,16 +39,6 @@ impl Example {
         Self { name, triggers, echoes, short }
     }
 
-    /// A ring with one pin for each module.
-    const fn one_pin(name: &'static str, modules: usize, short: bool) -> Self {
-        Self::new(name, ALL.split_at(modules).0, ALL.split_at(modules).0, short)
-    }
-
-    /// A ring of eight modules with two pins each.
-    const fn eight(name: &'static str, short: bool) -> Self {
-        Self::new(name, ALL.split_at(8).0, ALL.split_at(8).1, short)
-    }
-
     const fn modules(&self) -> usize {
         self.triggers.len()
     }
@@ -60,12 +51,12 @@ impl Example {
 const ALL: [u8; 16] = [2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16, 17];
 
 const EXAMPLES: [Example; 6] = [
-    Example::eight("Ring8", false),
-    Example::one_pin("Flow12", 12, true),
-    Example::one_pin("Strip", 6, false),
+    Example::new("Ring8", ALL.split_at(8).0, ALL.split_at(8).1, false),
+    Example::new("Flow12", ALL.split_at(12).0, ALL.split_at(12).0, true),
+    Example::new("Strip", ALL.split_at(6).0, ALL.split_at(6).0, false),
     Example::new("FromNewPing", &[4, 5, 6], &[4, 5, 6], true),
-    Example::one_pin("States4", 4, false),
-    Example::eight("SerialRing8", true),
+    Example::new("States4", ALL.split_at(4).0, ALL.split_at(4).0, false),
+    Example::new("SerialRing8", ALL.split_at(8).0, ALL.split_at(8).1, true),
 ];
 
 /// Parts to run.
@@ -86,19 +77,39 @@ pub(crate) struct Plan {
 }
 
 pub(crate) fn arduino(plan: &Plan, steps: &mut Steps) {
-    let library = Path::new(TARGET).join("libraries/Eeruf");
-    if plan.loads {
-        steps.step("other work in loop()", || loads::run(&pack()?, plan.newping.as_deref(), true));
+    if !plan.loads {
+        steps.step("tables of the Arduino library", || tables::check(plan.write));
+    }
+    let Some(library) = steps.step("Arduino library", pack) else { return };
+    if !plan.loads {
+        steps.step("Arduino library for its other cores", || cores(&library));
+    }
+    if steps.step("simulated world", world::build).is_none() {
         return;
     }
-    steps.step("tables of the Arduino library", || tables::check(plan.write));
-    steps.step("Arduino library", || pack().and_then(|library| examples(&library, plan.short)));
-    steps.step("Arduino library for its other cores", || cores(&library));
+    if plan.loads {
+        steps.step("other work in loop()", || loads::run(&library, plan.newping.as_deref(), true));
+        return;
+    }
+    steps.step("examples of the Arduino library", || examples(&library, plan.short));
     steps.step("pace of sketches", || pace::run(&library));
     steps.step("programs of `eeruf design`, a corner", || programs(&Drawn::default(), true));
     steps.step("log of a real ring", || real_log::run(&library));
     steps.step("sketches with a faulty module", || line_faults::run(&library));
     steps.step("other work in loop(), a corner", || loads::run(&library, None, false));
+}
+
+/// Runs a function on each item, on all processors; returns its answers in the order of the items.
+fn on_all_processors<T: Sync, R: Send>(items: &[T], run: impl Fn(usize, &T) -> R + Sync) -> Vec<R> {
+    let (next, workers) = (AtomicUsize::new(0), thread::available_parallelism().map_or(1, usize::from));
+    let taken = || Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|number| Some((number, items.get(number)?)));
+    let work = || std::iter::from_fn(taken).map(|(number, item)| (number, run(number, item))).collect::<Vec<_>>();
+    let mut done: Vec<_> = thread::scope(|scope| {
+        let started: Vec<_> = (0..workers).map(|_| scope.spawn(work)).collect();
+        started.into_iter().flat_map(|worker| worker.join().unwrap_or_else(|panic| resume_unwind(panic))).collect()
+    });
+    done.sort_by_key(|(number, _)| *number);
+    done.into_iter().map(|(_, answer)| answer).collect()
 }
 
 /// Packs the library, with its own files and those of `c/`, as the `.zip` that the IDE installs, and unpacks it into a
@@ -144,22 +155,21 @@ fn cores(library: &Path) -> Result<()> {
 }
 
 fn examples(library: &Path, short: bool) -> Result<()> {
-    let world = world::build()?;
     let seconds = if short { 3 } else { 20 };
     println!("| sketch | flash | data + bss | stack | firings/s | accepted/s | wrong of accepted |");
     println!("|---|---:|---:|---:|---:|---:|---:|");
     for example in &EXAMPLES {
         let sketch = build::example(library, example.name)?;
         if example.short || !short {
-            let heard = world::hear(&world, &sketch.elf, example, seconds, false)?;
+            let room = world::Room::alcove(format!("{TARGET}/{}.alcove", example.name), example.modules())?;
+            let heard = room.heard(&sketch.elf, seconds, &example.pins(), &[]).context(example.name)?;
             heard.is_plausible(example)?;
             println!("| {} | {} | {} | {} |", example.name, sketch.flash, sketch.ram, heard.row());
         }
     }
     let sketch = build::example(library, "Survey")?;
-    newping::builds(library)?;
     if !short {
-        println!("| Survey | {} | {} | {} |", sketch.flash, sketch.ram, survey::run(&world, &sketch.elf)?);
+        println!("| Survey | {} | {} | {} |", sketch.flash, sketch.ram, survey::run(&sketch.elf)?);
     }
     Ok(())
 }

@@ -69,12 +69,6 @@ enum Verb {
     },
     /// Run the tests of c/micropython in MicroPython's WebAssembly build and in CPython
     Micropython,
-    /// Run NewPing beside the Arduino library on a simulated Uno, and print the table that docs/how-to/arduino.md shows
-    Newping {
-        /// A folder with NewPing.h and NewPing.cpp, which are not part of this project
-        #[arg(value_name = "DIR")]
-        folder: std::path::PathBuf,
-    },
     /// Build what `eeruf design --program` writes in each language, and run it to what it accepts, on a simulated Uno
     /// too
     Programs(arduino::Drawn),
@@ -135,7 +129,6 @@ fn main() -> ExitCode {
         Verb::Arduino(plan) => arduino::arduino(&plan, &mut steps),
         Verb::Examples { board } => examples::examples(board.as_deref(), &mut steps),
         Verb::Micropython => one(&mut steps, "MicroPython", c::micropython),
-        Verb::Newping { folder } => one(&mut steps, "NewPing beside eeruf", || arduino::newping(&folder)),
         Verb::Programs(drawn) => one(&mut steps, "programs of `eeruf design`", || arduino::programs(&drawn, false)),
         Verb::Python => one(&mut steps, "Python package", python::python),
         Verb::Ros2 => {

@@ -5,10 +5,9 @@
  * ECHO_TIMES has a line for each path of sound: emitter, receiver, microseconds; `crates/eeruf-sim`'s example echo_times writes
  * it. Pins are the Uno's numbers, or with --mega those of a Mega 2560; the same pin twice is a module with one pin. The
  * sketch's serial output goes to standard output; then come lines that begin with `world`: firings of each module, triggers
- * that came while its line was high, how often its latched line was pulled low, the greatest depth of the stack in bytes, and
- * the share of time spent in interrupts, in millionths. With --pulses there is also a line for each pulse that sound has ended:
- * the module from 1, the source of the sound (`own`, `earlier` for an earlier firing of its own, or `foreign`), and the pulse's
- * width in microseconds. With --eeprom the board's EEPROM begins with these bytes. A byte that the sketch writes to GPIOR0
+ * that came while its line was high, how often its latched line was pulled low, and the greatest depth of the stack in bytes.
+ * With --pulses there is also a line for each pulse that sound has ended: the module from 1, the source of the sound (`own`,
+ * `earlier` for an earlier firing of its own, or `foreign`), and the pulse's width in microseconds. With --eeprom the board's EEPROM begins with these bytes. A byte that the sketch writes to GPIOR0
  * prints a line, too: `read`, the byte, and the number in GPIOR1 (high) and GPIOR2.
  *
  * With --fault a module, counted from 1, has a fault: `cut`, its trigger is not connected, or it has no power; `deaf`, its
@@ -297,15 +296,6 @@ static void on_note(struct avr_t *a, avr_io_addr_t address, uint8_t value, void 
     printf("world read %u %u\n", value, (unsigned)(a->data[0x4a] << 8 | a->data[0x4b]));
 }
 
-/* Cycles in interrupts; none interrupts another on this controller unless its handler asks for it. */
-static avr_cycle_count_t interrupted, interrupted_since;
-
-static void on_interrupt(struct avr_irq_t *irq, uint32_t value, void *param) {
-    (void)irq, (void)param;
-    if (value != 0) interrupted_since = avr->cycle;
-    else interrupted += avr->cycle - interrupted_since;
-}
-
 /* Parses `KIND:MODULE`. */
 static int read_fault(const char *text) {
     static const char *const kinds[] = {"",          "cut",       "deaf",  "glitch-high", "glitch-low", "spike",
@@ -406,7 +396,6 @@ int main(int argc, char **argv) {
     }
     avr_ioctl(avr, AVR_IOCTL_UART_SET_FLAGS('0'), &flags);
     avr_irq_register_notify(avr_io_getirq(avr, AVR_IOCTL_UART_GETIRQ('0'), UART_IRQ_OUTPUT), on_serial, NULL);
-    avr_irq_register_notify(avr_get_interrupt_irq(avr, AVR_INT_ANY) + AVR_INT_IRQ_RUNNING, on_interrupt, NULL);
     register_pin_changes();
     register_counters();
     avr_register_io_write(avr, 0x3e, on_note, NULL); /* GPIOR0 */
@@ -428,6 +417,5 @@ int main(int argc, char **argv) {
     printf("\nworld pulled low");
     for (i = 0; i < module_count; i++) printf(" %u", modules[i].pulled);
     printf("\nworld stack %u\n", deepest_stack);
-    printf("world interrupts %u\n", (unsigned)(interrupted * 1000000u / avr->cycle));
     return 0;
 }

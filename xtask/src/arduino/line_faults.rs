@@ -11,7 +11,8 @@ use eeruf_files::emit::Emit as _;
 use fs_err as fs;
 
 use super::build::{self, Board};
-use super::{ALL, world};
+use super::world::Room;
+use super::{ALL, TARGET};
 use crate::measured::cells;
 use crate::steps::edited;
 
@@ -85,10 +86,27 @@ impl Says {
     }
 }
 
-/// Returns a sketch's words about one module, reading by reading.
-fn words_of(said: &str, module: usize) -> Vec<&str> {
-    let prefix = format!("{module} ");
-    said.lines().filter_map(|line| line.trim().strip_prefix(&prefix)).collect()
+/// A sketch's output about its modules.
+struct Said(String);
+
+impl Said {
+    /// Runs a sketch among modules that each face a wall at this echo time, or nothing; one of them has a fault.
+    fn of(elf: &Path, fault: &str, seconds: u32, walls: &[Option<u32>], pins: &[u8]) -> Result<Self> {
+        let room = Room::walls(format!("{TARGET}/walls-of-faults.txt"), walls.iter().copied())?;
+        Ok(Self(room.text(elf, seconds, pins, &["--fault", fault]).with_context(|| fault.to_owned())?))
+    }
+
+    /// Returns the words about one module, reading by reading.
+    fn words(&self, module: usize) -> Vec<&str> {
+        let prefix = format!("{module} ");
+        self.0.lines().filter_map(|line| line.trim().strip_prefix(&prefix)).collect()
+    }
+
+    /// Returns the smallest number of distances for one of these modules.
+    fn least_distances(&self, modules: impl IntoIterator<Item = usize>) -> usize {
+        let distances = |module| counts(&self.words(module))[Says::Wall as usize];
+        modules.into_iter().map(distances).min().unwrap_or(0)
+    }
 }
 
 /// The numbers of readings in the order of [`Says`]: distances, clear, no answer, unsure.
@@ -104,24 +122,6 @@ fn counts(words: &[&str]) -> [usize; 4] {
         }
     }
     counts
-}
-
-/// Returns the smallest number of distances that a sketch prints for one of these modules.
-fn least_distances(said: &str, modules: impl IntoIterator<Item = usize>) -> usize {
-    let distances = |module| counts(&words_of(said, module))[Says::Wall as usize];
-    modules.into_iter().map(distances).min().unwrap_or(0)
-}
-
-/// Returns a sketch's output about modules, one of which has a fault; each faces its own wall, at this echo time.
-fn with_fault(
-    world: &Path,
-    elf: &Path,
-    fault: &str,
-    seconds: u32,
-    walls: &[Option<u32>],
-    pins: &[u8],
-) -> Result<String> {
-    world::before_walls(world, elf, &["--fault", fault], seconds, walls, pins).with_context(|| fault.to_owned())
 }
 
 /// A fault, its surroundings, and its numbers of readings: right ones, all, and those without evidence.
@@ -154,13 +154,12 @@ fn with_column(document: &str, said: &[Outcome]) -> Result<String> {
 
 /// Checks the output of sketches with a faulty module against the table; `EERUF_WRITE` writes the table.
 pub(super) fn run(library: &Path) -> Result<()> {
-    let world = &world::build()?;
     let file = fs::read_to_string(FILE)?;
     let document = fs::read_to_string(OUTCOMES)?;
-    let mut outcomes = faults_of_ring8(library, world, &file)?;
-    outcomes.extend(faults_of_edges(library, world, &file)?);
-    latched_line_recovers(library, world)?;
-    flow_says_states(library, world)?;
+    let mut outcomes = faults_of_ring8(library, &file)?;
+    outcomes.extend(faults_of_edges(library, &file)?);
+    latched_line_recovers(library)?;
+    flow_says_states(library)?;
     let said = with_column(&document, &outcomes)?;
     if env::var_os("EERUF_WRITE").is_some() {
         fs::write(OUTCOMES, &said)?;
@@ -170,7 +169,7 @@ pub(super) fn run(library: &Path) -> Result<()> {
 }
 
 /// Runs Ring8 with a faulty module that faces a wall, or nothing; the others must read their walls.
-fn faults_of_ring8(library: &Path, world: &Path, file: &str) -> Result<Vec<Outcome>> {
+fn faults_of_ring8(library: &Path, file: &str) -> Result<Vec<Outcome>> {
     const FAULTY: usize = 3;
     let sketch = build::example(library, "Ring8")?;
     let mut outcomes = vec![];
@@ -179,12 +178,12 @@ fn faults_of_ring8(library: &Path, world: &Path, file: &str) -> Result<Vec<Outco
             let expected = Says::of(file, name, place)?;
             let wall = |module| (module != FAULTY || place == "wall").then_some(EQUAL_US + 500 * module as u32);
             let walls: Vec<_> = (1..=8).map(wall).collect();
-            let said = with_fault(world, &sketch.elf, fault, 3, &walls, &ALL)?;
+            let said = Said::of(&sketch.elf, fault, 3, &walls, &ALL)?;
             // The wires of this module and the next one are exchanged.
             let exchanged = fault.starts_with("exchanged");
             let others = (1..=8).filter(|&module| module != FAULTY && !(exchanged && module == FAULTY + 1));
-            let least = least_distances(&said, others);
-            let found = counts(&words_of(&said, FAULTY));
+            let least = said.least_distances(others);
+            let found = counts(&said.words(FAULTY));
             // Until the health of a line shows its fault, the sketch is unsure.
             let [distances, clear, silent, unsure] = found;
             let (right, all) = (found[expected as usize], distances + clear + silent);
@@ -199,7 +198,7 @@ fn faults_of_ring8(library: &Path, world: &Path, file: &str) -> Result<Vec<Outco
 
 /// Runs the sketch of `c/arduino/world` with the faults that interrupts by level can have; returns its readings after
 /// the second.
-fn faults_of_edges(library: &Path, world: &Path, file: &str) -> Result<Vec<Outcome>> {
+fn faults_of_edges(library: &Path, file: &str) -> Result<Vec<Outcome>> {
     const FAULTY: usize = 2;
     let text = fs::read_to_string(EDGE_SKETCH)?;
     let text = format!("#define EERUF_POLLED\n{}\n{text}", table_of(file)?);
@@ -217,9 +216,9 @@ fn faults_of_edges(library: &Path, world: &Path, file: &str) -> Result<Vec<Outco
             };
             let exchanged = fault.starts_with("exchanged");
             let walls = [Some(WALL_US), faulty, Some(WALL_US), Some(WALL_US).filter(|_| !exchanged)];
-            let said = with_fault(world, &sketch.elf, fault, 5, &walls, &EDGE_PINS)?;
-            let least = least_distances(&said, [1, 3]);
-            let words = words_of(&said, FAULTY);
+            let said = Said::of(&sketch.elf, fault, 5, &walls, &EDGE_PINS)?;
+            let least = said.least_distances([1, 3]);
+            let words = said.words(FAULTY);
             let after = words.get(2..).unwrap_or_default();
             let found = counts(after);
             let mut distances = after.iter().filter_map(|words| words.parse::<u32>().ok());
@@ -236,7 +235,7 @@ fn faults_of_edges(library: &Path, world: &Path, file: &str) -> Result<Vec<Outco
 
 /// Checks Ring8 with a module that hears nothing in the first second and then holds its line until it is pulled low:
 /// without `recover()` it never answers, with it the module measures its wall.
-fn latched_line_recovers(library: &Path, world: &Path) -> Result<()> {
+fn latched_line_recovers(library: &Path) -> Result<()> {
     const FAULTY: usize = 3;
     const BEGIN: &str = "if (!sonar.begin())";
     let name = "examples/Ring8/Ring8.ino";
@@ -246,11 +245,11 @@ fn latched_line_recovers(library: &Path, world: &Path) -> Result<()> {
     let heard = |name: &str, text: &str| {
         let sketch = build::ours(library, Board::Uno, name, text, &[])?;
         println!("flash of {name}: {} B", sketch.flash);
-        with_fault(world, &sketch.elf, &format!("latched:{FAULTY}"), 4, &walls, &ALL)
+        Said::of(&sketch.elf, &format!("latched:{FAULTY}"), 4, &walls, &ALL)
     };
     let (without, with) = (heard("Ring8Stuck", &text)?, heard("Ring8Recovers", &recovers)?);
-    let words = words_of(&with, FAULTY);
-    let ([never, held, ..], [walls, clear, silent, _]) = (counts(&words_of(&without, FAULTY)), counts(&words));
+    let words = with.words(FAULTY);
+    let ([never, held, ..], [walls, clear, silent, _]) = (counts(&without.words(FAULTY)), counts(&words));
     // Each hold of 250 ms in the first second is three readings.
     let recovers = walls >= 40 && clear <= 3 * UNTIL_STUCK && silent > 0;
     // Once it measures its wall again, nothing is free.
@@ -262,7 +261,7 @@ fn latched_line_recovers(library: &Path, world: &Path) -> Result<()> {
 
 /// Checks States4 with a flow ring in place of its table: a module that faces nothing is clear, one without power does
 /// not answer, and the others keep reporting their walls.
-fn flow_says_states(library: &Path, world: &Path) -> Result<()> {
+fn flow_says_states(library: &Path) -> Result<()> {
     const SHOWN: usize = 3;
     let name = "examples/States4/States4.ino";
     let of_flow = [
@@ -276,8 +275,8 @@ fn flow_says_states(library: &Path, world: &Path) -> Result<()> {
     let pins = [&ALL[..4], &ALL[..4]].concat();
     let walls = [Some(EQUAL_US), Some(EQUAL_US + 500), None, Some(EQUAL_US + 1000)];
     for (fault, expected) in [("hold-38:3", Says::Clear), ("cut:3", Says::NoAnswer)] {
-        let said = with_fault(world, &sketch.elf, fault, 4, &walls, &pins)?;
-        let (found, least) = (counts(&words_of(&said, SHOWN)), least_distances(&said, [1, 2, 4]));
+        let said = Said::of(&sketch.elf, fault, 4, &walls, &pins)?;
+        let (found, least) = (counts(&said.words(SHOWN)), said.least_distances([1, 2, 4]));
         // Twenty times a second each; readings take the first few cycles.
         let (right, all): (usize, usize) = (found[expected as usize], found.iter().sum());
         let fine = least >= 50 && right >= 50 && right + found[Says::Unsure as usize] == all;

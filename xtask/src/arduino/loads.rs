@@ -1,28 +1,28 @@
 //! Other work in a sketch's `loop()`: right and wrong readings of a flow ring, polled and by interrupt, in the alcove,
 //! in a larger one, and with a separate wall for each module.
 
-use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::process::Command;
-use std::thread;
 
-use anyhow::{Result, anyhow, ensure};
+use anyhow::{Context as _, Result, ensure};
 use fs_err as fs;
 
 use super::build::{self, Board};
-use super::world::{self, UnderLoad};
-use super::{ALL, TARGET, newping};
+use super::world::{self, Room, UnderLoad};
+use super::{ALL, TARGET, on_all_processors};
 use crate::steps::output;
 use crate::toolchain::program;
 
 const SKETCH: &str = include_str!("loads/Loads.ino");
+const NEWPING: &str = include_str!("loads/NewPing.ino");
 /// The ring that `design` emits, with another number of modules.
 const RING: &str = "rings/hc-sr04-8.toml";
 const RINGS: [usize; 2] = [6, 8];
 /// The file with all figures.
 const FILE: &str = "tests/data/arduino-loads.csv";
 const POLLED: &str = "polled";
+const ALCOVE: &str = "alcove";
 const OWN_WALLS: &str = "own walls";
 /// Time for which each load runs, in seconds.
 const SECONDS: u32 = 3;
@@ -146,29 +146,33 @@ impl Load {
     }
 }
 
-/// Positions of the modules.
-struct Place {
-    name: &'static str,
-    ways: PathBuf,
-    own_mm: BTreeMap<usize, u32>,
-}
-
-/// The alcove; separate walls at 0.4 to 3.4 m, spaced by the golden section so that no two are alike; and the alcove
-/// 1.6 times as large, where a module's sound is still heard after 10 ms, for eight modules.
-fn places() -> Result<[Place; 3]> {
+/// The rooms by their names: the alcove; separate walls at 0.4 to 3.4 m, spaced by the golden section so that no two are
+/// alike; and the alcove 1.6 times as large, where a module's sound is still heard after 10 ms, for eight modules.
+fn rooms() -> Result<[(&'static str, Room); 3]> {
     let alcove = fs::read_to_string(world::KEPT)?;
-    let own = (0..8).map(|module| format!("{module} {module} {}\n", 2_300 + module * 618 % 1000 * 175 / 10)).collect();
+    let own = (0..8).map(|module| Some(2_300 + module * 618 % 1000 * 175 / 10));
     let larger = |line: &str| {
         let (who, us) = line.rsplit_once(' ')?;
         Some(format!("{who} {}\n", us.parse::<u32>().ok()? * 8 / 5))
     };
-    let large = alcove.lines().filter_map(larger).collect();
-    let place = |name: &'static str, ways: String| {
-        let file = Path::new(TARGET).join(format!("{}.txt", name.replace(' ', "-")));
-        fs::write(&file, &ways)?;
-        anyhow::Ok(Place { name, own_mm: world::own_walls(&ways), ways: file })
-    };
-    Ok([place("alcove", alcove)?, place(OWN_WALLS, own)?, place("large alcove", large)?])
+    let large: String = alcove.lines().filter_map(larger).collect();
+    let file = |name: &str| Path::new(TARGET).join(name);
+    Ok([
+        (ALCOVE, Room::alcove(file("alcove.txt"), 8)?),
+        (OWN_WALLS, Room::walls(file("own-walls.txt"), own)?),
+        ("large alcove", Room::new(file("large-alcove.txt"), &large)?),
+    ])
+}
+
+/// Returns the folder of NewPing's sources, and their version. The licence of NewPing does not allow it here.
+fn newping(folder: &Path) -> Result<(PathBuf, String)> {
+    let folders = [folder.to_owned(), folder.join("src")];
+    let found = folders.into_iter().find(|folder| folder.join("NewPing.h").exists());
+    let found = found.with_context(|| format!("{}: no NewPing.h in it", folder.display()))?;
+    let header = fs::read_to_string(found.join("NewPing.h"))?;
+    let version = header.split_once("NewPing Library - v").and_then(|(_, rest)| rest.split_whitespace().next());
+    let version = version.context("NewPing.h does not say its version as expected")?.to_owned();
+    Ok((found, version))
 }
 
 /// Makes the sketch for this many modules from the output of `design`.
@@ -191,99 +195,89 @@ fn sketch(library: &Path, modules: usize, polled: bool) -> Result<build::Sketch>
     )
 }
 
-/// A run of a sketch, with the way it gets its edges and its other work.
-struct Run<'a> {
-    elf: &'a Path,
+/// A sketch of this many modules: NewPing's, by its name, or ours.
+struct Ring {
+    modules: usize,
+    elf: PathBuf,
     edges: &'static str,
-    work: String,
+    newping: Option<String>,
+}
+
+/// A run of a sketch in a room, ours with other work.
+struct Run<'a> {
+    ring: &'a Ring,
+    room: &'a (&'static str, Room),
     load: Option<&'a Load>,
 }
 
-/// A ring in a place.
-struct Ring<'a> {
-    modules: usize,
-    place: &'a Place,
-    is_compared: bool,
-    runs: Vec<Run<'a>>,
+impl Run<'_> {
+    /// Returns the row of the table, and the broken promises.
+    fn row(&self) -> Result<(String, Vec<String>)> {
+        let (Ring { modules, elf, edges, newping }, (place, room)) = (self.ring, self.room);
+        let eeprom = self.load.map(Load::eeprom).unwrap_or_default();
+        let options = ["--pulses", "--eeprom", &eeprom];
+        let heard = room.heard(elf, SECONDS, &ALL[..*modules].repeat(2), &options)?.under_load();
+        let UnderLoad { right, wrong, wrong_percent, own_later, accepted_percent, worst, starved, slow_ms } = heard;
+        let said = slow_ms.map_or(String::new(), |ms| ms.to_string());
+        let work = newping.clone().or(self.load.map(Load::name)).unwrap_or_default();
+        // NewPing does not compare readings.
+        let accepted = self.load.map_or(String::new(), |_| format!("{accepted_percent:.1}"));
+        let per_second = format!("{right:.1},{wrong:.1},{wrong_percent:.1},{own_later:.1}");
+        let figures = format!("{per_second},{accepted},{worst:.1},{starved},{said}");
+        let row = format!("{modules},{place},{edges},{work},{figures}\n");
+        print!("{row}");
+        let is_compared = *modules == RINGS[0] && *place == ALCOVE;
+        let of = |load: &Load| load.broken(&heard, *edges == POLLED, is_compared, *place == OWN_WALLS);
+        let named = |what| format!("{modules} modules, {place}, {what}");
+        Ok((row, self.load.into_iter().flat_map(of).map(named).collect()))
+    }
 }
 
-impl Ring<'_> {
-    /// Returns the rows of all runs of the load, and the broken promises.
-    fn rows(&self, world: &Path, seconds: u32) -> Result<(String, Vec<String>)> {
-        let (mut rows, mut broken) = (String::new(), vec![]);
-        let (modules, place) = (self.modules, self.place.name);
-        for Run { elf, edges, work, load } in &self.runs {
-            let eeprom = load.map(Load::eeprom).unwrap_or_default();
-            let options = ["--pulses", "--eeprom", &eeprom];
-            let pins = ALL[..modules].repeat(2);
-            let mut command = world::command(world, &options, elf, seconds, &self.place.ways, &pins);
-            let heard = world::hear_by(&mut command, seconds, &self.place.own_mm)?.under_load();
-            let UnderLoad { right, wrong, wrong_percent, own_later, accepted_percent, worst, starved, slow_ms } = heard;
-            let said = slow_ms.map_or(String::new(), |ms| ms.to_string());
-            // NewPing does not compare readings.
-            let accepted = load.map_or(String::new(), |_| format!("{accepted_percent:.1}"));
-            let per_second = format!("{right:.1},{wrong:.1},{wrong_percent:.1},{own_later:.1}");
-            let figures = format!("{per_second},{accepted},{worst:.1},{starved},{said}");
-            let row = format!("{modules},{place},{edges},{work},{figures}");
-            println!("{row}");
-            rows += &(row + "\n");
-            let of = |load: &Load| load.broken(&heard, *edges == POLLED, self.is_compared, place == OWN_WALLS);
-            let named = |what| format!("{modules} modules, {place}, {what}");
-            broken.extend(load.iter().copied().flat_map(of).map(named));
+/// Builds the sketches of all rings: NewPing's, if a folder has its sources, and ours.
+fn rings(library: &Path, newping_in: Option<&Path>, all: bool) -> Result<Vec<Ring>> {
+    let mut rings = vec![];
+    for modules in RINGS.into_iter().filter(|&modules| all || modules == RINGS[0]) {
+        for (folder, wait_ms) in newping_in.into_iter().flat_map(|folder| [0, 5, 10, 29].map(|ms| (folder, ms))) {
+            let (sources, version) = newping(folder)?;
+            let defines = ["-w", &format!("-DMODULES={modules}"), &format!("-DWAIT_MS={wait_ms}")];
+            let name = format!("NewPing{modules}Waits{wait_ms}");
+            let elf = build::sketch(&sources, Board::Uno, &name, NEWPING, &defines)?.elf;
+            let newping = Some(format!("NewPing {version} every {wait_ms} ms"));
+            rings.push(Ring { modules, elf, edges: "waits", newping });
         }
-        Ok((rows, broken))
+        for edges in [POLLED, "interrupts"] {
+            let elf = sketch(library, modules, edges == POLLED)?.elf;
+            rings.push(Ring { modules, elf, edges, newping: None });
+        }
     }
+    Ok(rings)
 }
 
 /// Runs all loads and writes their figures, or runs a few of them for CI.
-pub(super) fn run(library: &Path, newping: Option<&Path>, all: bool) -> Result<()> {
-    let world = world::build()?;
-    let mut sketches = vec![];
+pub(super) fn run(library: &Path, newping_in: Option<&Path>, all: bool) -> Result<()> {
+    let (rings, rooms) = (rings(library, newping_in, all)?, rooms()?);
+    let chosen: Vec<&Load> =
+        KINDS.iter().enumerate().filter(|(number, _)| all || CORNER.contains(number)).map(|(_, load)| load).collect();
+    let mut runs = vec![];
     for modules in RINGS {
-        let mut of_ring = vec![];
-        for wait_ms in newping.iter().flat_map(|_| [0, 5, 10, 29]) {
-            let (sources, version) = newping::sources(newping.unwrap_or(library))?;
-            let defines = ["-w", &format!("-DMODULES={modules}"), &format!("-DWAIT_MS={wait_ms}")];
-            let name = format!("NewPing{modules}Waits{wait_ms}");
-            let sketch = build::sketch(&sources, Board::Uno, &name, newping::NEWPING, &defines)?;
-            of_ring.push((sketch.elf, "waits", format!("NewPing {version} every {wait_ms} ms")));
-        }
-        for edges in [POLLED, "interrupts"].into_iter().filter(|_| all || modules == RINGS[0]) {
-            of_ring.push((sketch(library, modules, edges == POLLED)?.elf, edges, String::new()));
-        }
-        sketches.push((modules, of_ring));
-    }
-    let places = places()?;
-    let mut rings = vec![];
-    for (modules, of_ring) in &sketches {
-        let in_place = |number: usize| if all { number < RINGS.len() || *modules > RINGS[0] } else { number == 0 };
-        for (number, place) in places.iter().enumerate().filter(|(number, _)| in_place(*number)) {
-            let is_compared = *modules == RINGS[0] && number == 0;
-            let mut runs = vec![];
-            for (elf, edges, work) in of_ring {
-                if !work.is_empty() {
-                    runs.push(Run { elf, edges, work: work.clone(), load: None });
-                    continue;
-                }
-                let chosen = KINDS.iter().enumerate().filter(|(number, _)| all || CORNER.contains(number));
-                runs.extend(chosen.map(|(_, load)| Run { elf, edges, work: load.name(), load: Some(load) }));
+        let most = if all { [2, 3][usize::from(modules > RINGS[0])] } else { 1 };
+        for room in &rooms[..most] {
+            for ring in rings.iter().filter(|ring| ring.modules == modules) {
+                let loads =
+                    if ring.newping.is_some() { vec![None] } else { chosen.iter().copied().map(Some).collect() };
+                runs.extend(loads.into_iter().map(|load| Run { ring, room, load }));
             }
-            rings.push(Ring { modules: *modules, place, is_compared, runs });
         }
     }
     let mut table = "modules,place,edges,work,right_per_s,wrong_per_s,wrong_percent,own_later_per_s,accepted_percent,\
          worst_right_per_s,starved,said_ms\n"
         .to_owned();
     print!("{table}");
-    let world = &world;
-    let done = thread::scope(|scope| {
-        let started: Vec<_> = rings.iter().map(|ring| scope.spawn(move || ring.rows(world, SECONDS))).collect();
-        started.into_iter().map(|one| one.join().map_err(|_| anyhow!("a thread failed"))?).collect::<Result<Vec<_>>>()
-    })?;
     let mut broken = vec![];
-    for (rows, of_ring) in done {
-        table += &rows;
-        broken.extend(of_ring);
+    for done in on_all_processors(&runs, |_, run| run.row()) {
+        let (row, of_run) = done?;
+        table += &row;
+        broken.extend(of_run);
     }
     if all {
         fs::write(FILE, table)?;

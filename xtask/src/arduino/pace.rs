@@ -6,11 +6,12 @@ use anyhow::{Context as _, Result, ensure};
 use fs_err as fs;
 
 use super::build::{self, Board};
-use super::{EXAMPLES, Example, world};
+use super::world::Room;
+use super::{EXAMPLES, TARGET};
 use crate::steps::edited;
 
-/// Sketches that read by a class.
-const SKETCHES: [&str; 5] = ["Ring8", "States4", "FromNewPing", "Flow12", "Strip"];
+/// The sketch that has no `read()` of its own.
+const WITHOUT: &str = "SerialRing8";
 const SECONDS: u32 = 3;
 /// Words in each sketch before `X ms`.
 const STATED: &str = "One read() takes up to ";
@@ -31,18 +32,19 @@ const TIMED: &str = "bool timed() {
 void setup() {";
 
 pub(super) fn run(library: &Path) -> Result<()> {
-    let world = world::build()?;
     println!("| sketch | longest read() | it states |\n|---|---:|---:|");
-    for name in SKETCHES {
-        let example = EXAMPLES.iter().find(|example| example.name == name);
-        let example = example.with_context(|| format!("{name}: no such example"))?;
+    for example in EXAMPLES.iter().filter(|example| example.name != WITHOUT) {
+        let name = example.name;
         let file = format!("examples/{name}/{name}.ino");
         let text = fs::read_to_string(library.join(&file))?;
         let stated = text.split_once(STATED).and_then(|(_, after)| after.split_once(" ms"));
         let stated = stated.and_then(|(ms, _)| ms.parse::<f64>().ok());
         let stated = stated.with_context(|| format!("{file}: expected `{STATED}X ms`"))?;
         let timed = edited(&text, &[("sonar.read()", "timed()"), ("void setup() {", TIMED)])?;
-        let said = heard(library, &world, example, &format!("{name}Timed"), &timed)?;
+        let elf = build::ours(library, Board::Uno, &format!("{name}Timed"), &timed, &[])?.elf;
+        let walls = (0..example.modules() as u32).map(|module| Some(6_000 + 1_300 * module));
+        let room = Room::walls(format!("{TARGET}/walls-of-paces.txt"), walls)?;
+        let said = room.text(&elf, SECONDS, &example.pins(), &[])?;
         let longest =
             said.lines().filter_map(|line| line.trim().strip_prefix("longest ")?.parse::<f64>().ok()).next_back();
         let ms = longest.unwrap_or(0.0) / 1000.0;
@@ -51,11 +53,4 @@ pub(super) fn run(library: &Path) -> Result<()> {
         println!("| {name} | {ms:.2} ms | {stated} ms |");
     }
     Ok(())
-}
-
-/// Returns the output of a sketch whose modules each face a wall of their own.
-fn heard(library: &Path, world: &Path, example: &Example, name: &str, text: &str) -> Result<String> {
-    let sketch = build::ours(library, Board::Uno, name, text, &[])?;
-    let walls: Vec<_> = (0..example.modules() as u32).map(|module| Some(6_000 + 1_300 * module)).collect();
-    world::before_walls(world, &sketch.elf, &[], SECONDS, &walls, &example.pins())
 }

@@ -4,17 +4,15 @@
 
 use std::path::Path;
 use std::process::Command;
-use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
-use std::thread;
 
-use anyhow::{Context as _, Result, bail, ensure};
+use anyhow::{Context as _, Error, Result, ensure};
 use fs_err as fs;
 
 use super::build::{self, Board};
 use super::loads::{self, Load};
-use super::world::{self, Heard};
-use crate::steps::{edited, empty, output, run};
+use super::on_all_processors;
+use super::world::{self, Room};
+use crate::steps::{Skipped, edited, empty, output, run};
 use crate::toolchain::program;
 
 /// Combinations to draw.
@@ -31,9 +29,6 @@ pub(crate) struct Drawn {
     /// M0
     #[arg(long)]
     loads: bool,
-    /// Only rows that contain this text, as "12 | arduino --way flow | delay(3)"; by default all
-    #[arg(long, value_name = "TEXT", default_value = "")]
-    only: String,
 }
 
 /// A requested program: ring file or number of modules, options, and the other work of its loop.
@@ -94,7 +89,8 @@ struct Figures {
 pub(crate) fn programs(drawn: &Drawn, short: bool) -> Result<()> {
     let folder = Path::new("target/programs");
     empty(folder)?;
-    let (world, program) = (world::build()?, program()?);
+    world::build()?;
+    let program = program()?;
     let mut state = drawn.seed;
     let mut asked = vec![];
     let rings = if drawn.combinations > 0 || drawn.loads { 0 } else { [RINGS.len(), 1][usize::from(short)] };
@@ -114,31 +110,17 @@ pub(crate) fn programs(drawn: &Drawn, short: bool) -> Result<()> {
     }
     let count = if short { CORNER } else { drawn.combinations };
     asked.extend((0..count).map(|_| Asked::drawn(&mut state)));
-    asked.retain(|asked| asked.name().contains(&drawn.only));
     println!("| ring | program | other work | accepted | worst module | wrong | in the alcove: stack, wrong |");
     println!("|---|---|---|---:|---:|---:|---:|");
-    let workers = thread::available_parallelism().map_or(1, usize::from);
-    let (next, failed) = (AtomicUsize::new(0), Mutex::new(vec![]));
-    let work = || {
-        while let Some((number, asked)) =
-            Some(next.fetch_add(1, Ordering::Relaxed)).and_then(|n| Some((n, asked.get(n)?)))
-        {
-            let name = asked.name();
-            match asked.row(&folder.join(format!("ring_{number}")), short, [&program, &world]) {
-                Ok(row) => println!("| {name} | {row} |"),
-                Err(error) => failed.lock().unwrap_or_else(PoisonError::into_inner).push(error.context(name)),
-            }
-        }
-    };
-    thread::scope(|scope| (0..workers).for_each(|_| _ = scope.spawn(work)));
-    let failed = failed.into_inner().unwrap_or_else(PoisonError::into_inner);
-    let skipped = failed.iter().position(anyhow::Error::is::<crate::steps::Skipped>);
-    let broken = failed.iter().map(|error| format!("{error:#}")).collect::<Vec<_>>().join("\n");
-    match skipped.and_then(|skipped| failed.into_iter().nth(skipped)) {
-        Some(skipped) => Err(skipped),
-        None if broken.is_empty() => Ok(()),
-        None => bail!("{broken}"),
-    }
+    let failed = on_all_processors(&asked, |number, asked| {
+        let row = asked.row(&folder.join(format!("ring_{number}")), short, &program);
+        row.map(|row| println!("| {} | {row} |", asked.name())).map_err(|error| error.context(asked.name()))
+    });
+    let (skipped, broken): (Vec<Error>, Vec<Error>) =
+        failed.into_iter().filter_map(Result::err).partition(Error::is::<Skipped>);
+    let broken: Vec<_> = broken.iter().map(|error| format!("{error:#}")).collect();
+    ensure!(broken.is_empty(), "{}", broken.join("\n"));
+    skipped.into_iter().next().map_or(Ok(()), Err)
 }
 
 impl Asked {
@@ -176,7 +158,7 @@ impl Asked {
     }
 
     /// Runs a program, and returns the columns of its figures, if they are good enough.
-    fn row(&self, out: &Path, short: bool, [program, world]: [&Path; 2]) -> Result<String> {
+    fn row(&self, out: &Path, short: bool, program: &Path) -> Result<String> {
         let seconds = if short { 3 } else { 5 };
         let mut text = match self.ring.parse::<usize>() {
             Ok(modules) => format!("sensors = {modules}\nlayout = \"ring\"\nspeed_m_s = 0.5\n"),
@@ -193,8 +175,8 @@ impl Asked {
         output(design.arg("design").arg(ring).arg("--program").args(words.split(' ')).arg("--out").arg(out))?;
         let polled = self.options.ends_with("polled") || self.options.starts_with("micropython");
         let figures = match self.options.split(' ').next() {
-            Some("arduino") if self.options == MAVLINK => return obstacles(world, out, seconds),
-            Some("arduino") => self.sketch(out, seconds, world)?,
+            Some("arduino") if self.options == MAVLINK => return obstacles(out, seconds),
+            Some("arduino") => self.sketch(out, seconds)?,
             Some("micropython") => self.counted(Command::new("python3").arg(format!("{WALLS}/walls.py")).arg(out))?,
             Some("c") => self.counted(&mut c(out)?)?,
             _ => self.counted(&mut rust(out, self)?)?,
@@ -257,7 +239,7 @@ impl Asked {
 
     /// Returns figures of a sketch, built as the IDE does, from its folder alone. With twelve modules or fewer it also
     /// runs in the alcove.
-    fn sketch(&self, folder: &Path, seconds: u32, world: &Path) -> Result<Figures> {
+    fn sketch(&self, folder: &Path, seconds: u32) -> Result<Figures> {
         let mut text = sketch_in(folder)?;
         let mut eeprom = String::new();
         if let Some(load) = &self.load {
@@ -281,33 +263,19 @@ impl Asked {
         let (elf, pins) = built(folder, if is_mega { Board::Mega } else { Board::Uno }, &text)?;
         let options = [&["--mega"][usize::from(!is_mega)..], &["--eeprom", &eeprom]].concat();
         let modules = pins.len() / 2;
-        let ways = folder.join("walls.txt");
         // By the golden section, so that no two are alike.
         let span: usize = self.work()[2].parse()?;
-        let walls = (0..modules).map(|x| format!("{x} {x} {}\n", 1_500 + x * 618 % 1000 * span));
-        fs::write(&ways, walls.collect::<String>())?;
-        let own_mm = world::own_walls(&fs::read_to_string(&ways)?);
-        let said = output(&mut world::command(world, &options, &elf, seconds, &ways, &pins))?;
-        let read = |line: &str| match (self.load, line.strip_prefix("world read ")) {
-            (Some(_), Some(read)) => Some(format!("{read}\n")),
-            (Some(_), None) => line.starts_with("world ").then(|| format!("{line}\n")),
-            (None, _) => Some(format!("{line}\n")),
-        };
-        let heard = Heard::of(&said.lines().filter_map(read).collect::<String>(), &own_mm);
+        let walls = (0..modules).map(|x| Some((1_500 + x * 618 % 1000 * span) as u32));
+        let heard = Room::walls(folder.join("walls.txt"), walls)?.heard(&elf, seconds, &pins, &options)?;
         // If every echo is believed, so is the first, which the shares leave out.
-        let (accepted, worst) = (heard.shares().0.min(100.0), heard.shares().1.0.min(100.0));
-        let wrong = heard.wrong_percent();
+        let (accepted, (worst, _)) = heard.shares();
         let mut in_alcove = None;
         if modules <= 12 {
-            let (alcove, own_mm) = match modules {
-                9.. => world::echo_times(modules)?,
-                _ => (world::KEPT.into(), world::own_walls(&fs::read_to_string(world::KEPT)?)),
-            };
-            let mut command = world::command(world, &options, &elf, seconds, &alcove, &pins);
-            let heard = world::hear_by(&mut command, seconds, &own_mm)?;
+            let heard = Room::alcove(folder.join("alcove.txt"), modules)?.heard(&elf, seconds, &pins, &options)?;
             in_alcove = Some((heard.stack, heard.wrong_percent()));
         }
-        Ok(Figures { accepted, worst, wrong, in_alcove, says_so: said.contains("too slow") })
+        let (wrong, says_so) = (heard.wrong_percent(), heard.says_so);
+        Ok(Figures { accepted: accepted.min(100.0), worst: worst.min(100.0), wrong, in_alcove, says_so })
     }
 }
 
@@ -326,14 +294,13 @@ fn built(folder: &Path, board: Board, text: &str) -> Result<(std::path::PathBuf,
 }
 
 /// The rate of `OBSTACLE_DISTANCE` messages of a car's sketch, whose later half must show the wall of each module.
-fn obstacles(world: &Path, folder: &Path, seconds: u32) -> Result<String> {
+fn obstacles(folder: &Path, seconds: u32) -> Result<String> {
     let (elf, pins) = built(folder, Board::Uno, &sketch_in(folder)?)?;
     // Ahead, left, right, behind, at 1 to 3.9 m: the sector that looks there, of 5 degrees clockwise from -20 on.
-    let ways = folder.join("walls.txt");
-    fs::write(&ways, "0 0 5828\n1 1 11655\n2 2 17483\n3 3 22727\n")?;
+    let room = Room::walls(folder.join("walls.txt"), [5_828, 11_655, 17_483, 22_727].map(Some))?;
     let sectors = [4, 58, 22, 40];
-    let ran = world::command(world, &[], &elf, seconds, &ways, &pins).output()?;
-    let frames: Vec<_> = (0..ran.stdout.len()).filter_map(|at| sectors_in(&ran.stdout[at..])).collect();
+    let said = room.run(&elf, seconds, &pins, &[])?;
+    let frames: Vec<_> = (0..said.len()).filter_map(|at| sectors_in(&said[at..])).collect();
     ensure!(!frames.is_empty(), "no OBSTACLE_DISTANCE");
     for frame in &frames[frames.len() / 2..] {
         for (sector, cm) in sectors.into_iter().zip([100, 200, 300, 390]) {

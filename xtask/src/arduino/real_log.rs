@@ -9,7 +9,8 @@ use fs_err as fs;
 use serde_json::Value;
 
 use super::build::{self, Board};
-use super::{ALL, TARGET, world};
+use super::world::{Room, SCENE};
+use super::{ALL, TARGET};
 use crate::steps::output;
 use crate::toolchain::program;
 
@@ -20,10 +21,8 @@ const SECONDS: u32 = 6;
 pub(super) fn run(library: &Path) -> Result<()> {
     let text = fs::read_to_string(library.join("examples/RealLog/RealLog.ino"))?;
     let sketch = build::ours(library, Board::Uno, "RealLog", &text, &[&format!("-DSECONDS={SECONDS}")])?;
-    let (world, pins) = (world::build()?, ALL[..MODULES].repeat(2));
-    let ways = Path::new(world::KEPT);
-    let said = world::command(&world, &[], &sketch.elf, 3 * SECONDS, ways, &pins).output()?;
-    let said = String::from_utf8_lossy(&said.stdout).replace('\r', "");
+    let room = Room::alcove(format!("{TARGET}/alcove-of-log.txt"), MODULES)?;
+    let said = room.text(&sketch.elf, 3 * SECONDS, &ALL[..MODULES].repeat(2), &[])?;
     let (_, rows) = said.split_once("sensor,").context("no header")?;
     let rows: String =
         rows.lines().take_while(|line| !line.starts_with("world")).map(|line| format!("{line}\n")).collect();
@@ -31,7 +30,7 @@ pub(super) fn run(library: &Path) -> Result<()> {
     fs::write(&log, format!("sensor,{rows}"))?;
     for method in ["sequential", "flow", "blocking"] {
         let mut reality = Command::new(program()?);
-        reality.args(["lab", "reality", "--json", "--method", method]).arg(&log).arg(world::SCENE);
+        reality.args(["lab", "reality", "--json", "--method", method]).arg(&log).arg(SCENE);
         let found: Value = serde_json::from_str(&output(&mut reality)?)?;
         let sensors = found["sensors"].as_array().context("no sensors")?;
         let like = sensors.iter().filter(|sensor| sensor["is_like"] == true).count();

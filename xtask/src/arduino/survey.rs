@@ -9,6 +9,7 @@ use fs_err as fs;
 use serde_json::Value;
 
 use super::TARGET;
+use super::world::{KEPT, Room};
 use crate::steps::output;
 
 const MODULES: usize = 4;
@@ -21,10 +22,8 @@ const UNTIL_US: f64 = 15_000.0;
 const OFF_US: f64 = 30.0;
 
 /// Runs the sketch, and returns the remaining columns of the table.
-pub(super) fn run(world: &Path, elf: &Path) -> Result<String> {
-    let ways = Path::new(super::world::KEPT);
-    let said = super::world::command(world, &[], elf, SECONDS, ways, &PINS).output()?;
-    let said = String::from_utf8_lossy(&said.stdout).replace('\r', "");
+pub(super) fn run(elf: &Path) -> Result<String> {
+    let said = Room::alcove(format!("{TARGET}/alcove-of-survey.txt"), 8)?.text(elf, SECONDS, &PINS, &[])?;
     let begins = said.find("# clock").context("no log")?;
     let ends = said.find("# over").with_context(|| format!("not over after {SECONDS} s"))?;
     let log = Path::new(TARGET).join("survey.csv");
@@ -33,7 +32,7 @@ pub(super) fn run(world: &Path, elf: &Path) -> Result<String> {
     let found: Value = serde_json::from_str(&found)?;
     let number = |path: &Value, name: &str| path[name].as_f64().unwrap_or(f64::NAN);
     let paths = found["paths"].as_array().map_or(&[][..], Vec::as_slice);
-    let text = fs::read_to_string(ways)?;
+    let text = fs::read_to_string(KEPT)?;
     let ways: Vec<_> = text
         .lines()
         .filter_map(|line| {

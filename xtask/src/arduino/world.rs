@@ -1,10 +1,10 @@
-//! The simulated world around an Uno, and a sketch's output in it.
+//! The simulated world around a board, and a sketch's output in it.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
-use anyhow::{Context as _, Error, Result, anyhow, bail, ensure};
+use anyhow::{Error, Result, anyhow, ensure};
 use eeruf_core::{ReadingKind, SpeedOfSound};
 use eeruf_serial::{Decoder, FiringMessage, Message, Received};
 use fs_err as fs;
@@ -12,12 +12,97 @@ use fs_err as fs;
 use super::{Example, TARGET};
 use crate::steps::{need, output, run, skip};
 
-/// The room of the examples, in which modules hear each other.
+/// The scene of the examples, in which modules hear each other.
 pub(super) const SCENE: &str = "scenes/alcove-hc-sr04.toml";
-/// The paths as a file, for users without Rust.
+/// The paths of sound in it, for users without Rust.
 pub(super) const KEPT: &str = "c/arduino/world/alcove.txt";
+/// The program that [`build`] makes.
+const WORLD: &str = "target/arduino/world";
 /// Error in mm above which a reading is wrong: 0.3 ms of echo time.
 const OFF_MM: u32 = 50;
+
+/// Builds `c/arduino/world/world.c`, and checks the kept paths of sound.
+pub(super) fn build() -> Result<()> {
+    need("gcc --version", "apt install gcc")?;
+    need("avr-g++ --version", "apt install gcc-avr avr-libc binutils-avr arduino-core-avr")?;
+    if !Path::new("/usr/include/simavr/sim_avr.h").exists() {
+        return skip("no simavr; install libsimavr-dev libelf-dev".to_owned());
+    }
+    fs::create_dir_all(TARGET)?;
+    run(Command::new("gcc")
+        .args(["-std=gnu99", "-O2", "-Wall", "-Wextra", "-Werror", "c/arduino/world/world.c", "-o", WORLD])
+        .args(["-lsimavr", "-lelf"]))?;
+    let is_kept = fs::read_to_string(KEPT)? == echo_times(8)?;
+    ensure!(is_kept, "{KEPT} is not what `cargo lab echo-times {SCENE}` prints; rewrite it");
+    Ok(())
+}
+
+/// The paths of sound in the scene, around its eight modules or around another number of them.
+fn echo_times(modules: usize) -> Result<String> {
+    let sensors = (modules != 8).then(|| modules.to_string());
+    Ok(output(Command::new(crate::toolchain::lab()?).args(["echo-times", SCENE]).args(sensors))? + "\n")
+}
+
+/// A room of modules: the file with the paths of sound, and the distance that each module should measure.
+pub(super) struct Room {
+    file: PathBuf,
+    own_mm: BTreeMap<usize, u32>,
+}
+
+impl Room {
+    /// Makes a room, and its file, of paths of sound: lines of emitter, receiver and microseconds.
+    pub(super) fn new(file: impl Into<PathBuf>, paths: &str) -> Result<Self> {
+        let (file, mut own_mm) = (file.into(), BTreeMap::new());
+        fs::write(&file, paths)?;
+        for line in paths.lines() {
+            let numbers: Vec<usize> = line.split(' ').filter_map(|number| number.parse().ok()).collect();
+            if let [emitter, receiver, us] = numbers[..]
+                && emitter == receiver
+            {
+                // 343.2 m/s, there and back.
+                let mm = (us as u64 * 3432 / 20_000) as u32;
+                let least = own_mm.entry(emitter).or_insert(mm);
+                *least = mm.min(*least);
+            }
+        }
+        Ok(Self { file, own_mm })
+    }
+
+    /// Makes a room in which each module faces a wall of its own at this echo time, or nothing.
+    pub(super) fn walls(file: impl Into<PathBuf>, us: impl IntoIterator<Item = Option<u32>>) -> Result<Self> {
+        let path = |(module, us): (usize, Option<u32>)| us.map(|us| format!("{module} {module} {us}\n"));
+        Self::new(file, &us.into_iter().enumerate().filter_map(path).collect::<String>())
+    }
+
+    /// Makes the scene of the examples around its eight modules, of which a ring may have fewer, or around more of them.
+    pub(super) fn alcove(file: impl Into<PathBuf>, modules: usize) -> Result<Self> {
+        let paths = if modules > 8 { echo_times(modules) } else { Ok(fs::read_to_string(KEPT)?) };
+        Self::new(file, &paths?)
+    }
+
+    /// Runs a sketch for some seconds of its own time among modules on these pins, triggers and then echoes; returns
+    /// the bytes that it and the world print.
+    pub(super) fn run(&self, elf: &Path, seconds: u32, pins: &[u8], options: &[&str]) -> Result<Vec<u8>> {
+        let mut world = Command::new(WORLD);
+        world.args(options).arg(elf).arg(seconds.to_string()).arg(&self.file).arg((pins.len() / 2).to_string());
+        let ran = world.args(pins.iter().map(ToString::to_string)).output()?;
+        ensure!(ran.status.success(), "the simulated world: {}", ran.status);
+        Ok(ran.stdout)
+    }
+
+    /// Runs a sketch, and returns its lines.
+    pub(super) fn text(&self, elf: &Path, seconds: u32, pins: &[u8], options: &[&str]) -> Result<String> {
+        Ok(String::from_utf8_lossy(&self.run(elf, seconds, pins, options)?).replace('\r', ""))
+    }
+
+    /// Runs a sketch, and returns the figures of its readings.
+    pub(super) fn heard(&self, elf: &Path, seconds: u32, pins: &[u8], options: &[&str]) -> Result<Heard> {
+        let said = self.run(elf, seconds, pins, options)?;
+        let mut heard = Heard { seconds, ..Heard::of(&String::from_utf8_lossy(&said), &self.own_mm) };
+        heard.frames(&said, &self.own_mm).map_err(Error::msg)?;
+        Ok(heard)
+    }
+}
 
 /// Figures of a run.
 #[derive(Default)]
@@ -26,8 +111,6 @@ pub(super) struct Heard {
     firings: Vec<u32>,
     ignored: u32,
     pub(super) stack: u32,
-    /// The share of the time spent in interrupts, in millionths.
-    interrupts: u32,
     accepted: u32,
     by_module: BTreeMap<usize, u32>,
     wrong: u32,
@@ -36,8 +119,7 @@ pub(super) struct Heard {
     right_by_module: BTreeMap<usize, u32>,
     /// Time of the sketch's first message that it is too slow, in milliseconds.
     slow_ms: Option<u32>,
-    /// Wrong readings by cause: a module's own sound on another path, its own of an earlier firing, another's.
-    by_cause: [u32; 3],
+    pub(super) says_so: bool,
 }
 
 /// Figures of a sketch with other work: right readings, wrong ones, and correctly measured own later echoes, each per
@@ -54,104 +136,15 @@ pub(super) struct UnderLoad {
     pub(super) slow_ms: Option<u32>,
 }
 
-const CAUSES: [&str; 3] = ["own", "earlier", "foreign"];
-
-/// Builds `c/arduino/world/world.c`.
-pub(super) fn build() -> Result<PathBuf> {
-    need("gcc --version", "apt install gcc")?;
-    need("avr-g++ --version", "apt install gcc-avr avr-libc binutils-avr arduino-core-avr")?;
-    if !Path::new("/usr/include/simavr/sim_avr.h").exists() {
-        return skip("no simavr; install libsimavr-dev libelf-dev".to_owned());
-    }
-    fs::create_dir_all(TARGET)?;
-    let world = Path::new(TARGET).join("world");
-    run(Command::new("gcc")
-        .args(["-std=gnu99", "-O2", "-Wall", "-Wextra", "-Werror", "c/arduino/world/world.c", "-o"])
-        .arg(&world)
-        .args(["-lsimavr", "-lelf"]))?;
-    Ok(world)
-}
-
-/// Writes the paths of sound among the scene's eight modules, or among more of them all around, to a file; also returns
-/// the distance that each module should measure.
-pub(super) fn echo_times(modules: usize) -> Result<(PathBuf, BTreeMap<usize, u32>)> {
-    let sensors = (modules > 8).then(|| modules.to_string());
-    let times = output(Command::new(crate::toolchain::lab()?).args(["echo-times", SCENE]).args(&sensors))? + "\n";
-    if sensors.is_none() && fs::read_to_string(KEPT)? != times {
-        bail!("{KEPT} is not what `cargo lab echo-times {SCENE}` prints; rewrite it");
-    }
-    let own_mm = own_walls(&times);
-    let file = Path::new(TARGET).join(format!("echo-times-{modules}.txt"));
-    fs::write(&file, times)?;
-    Ok((file, own_mm))
-}
-
-/// Returns the distance that each module should measure, from the paths of sound.
-pub(super) fn own_walls(times: &str) -> BTreeMap<usize, u32> {
-    let mut own_mm = BTreeMap::new();
-    for line in times.lines() {
-        let numbers: Vec<usize> = line.split(' ').filter_map(|number| number.parse().ok()).collect();
-        let [emitter, receiver, us] = numbers[..] else { continue };
-        if emitter == receiver {
-            // 343.2 m/s, there and back.
-            let mm = (us as u64 * 3432 / 20_000) as u32;
-            let least = own_mm.entry(emitter).or_insert(mm);
-            *least = mm.min(*least);
-        }
-    }
-    own_mm
-}
-
-/// The command that runs a sketch for some seconds of its own time among modules on these pins (triggers, then echoes),
-/// with the paths of sound in a file.
-pub(super) fn command(world: &Path, options: &[&str], elf: &Path, seconds: u32, ways: &Path, pins: &[u8]) -> Command {
-    let mut command = Command::new(world);
-    command.args(options).arg(elf).arg(seconds.to_string()).arg(ways).arg((pins.len() / 2).to_string());
-    command.args(pins.iter().map(ToString::to_string));
-    command
-}
-
-/// The output of a sketch whose modules each face a wall at this echo time, or nothing.
-pub(super) fn before_walls(
-    world: &Path,
-    elf: &Path,
-    options: &[&str],
-    seconds: u32,
-    walls: &[Option<u32>],
-    pins: &[u8],
-) -> Result<String> {
-    let way = |(module, us): (usize, &Option<u32>)| us.map(|us| format!("{module} {module} {us}\n"));
-    let ways = Path::new(TARGET).join("walls.txt");
-    fs::write(&ways, walls.iter().enumerate().filter_map(way).collect::<String>())?;
-    output(&mut command(world, options, elf, seconds, &ways, pins))
-}
-
-/// Runs a sketch for some seconds of its own time. With `causes` the world prints why each pulse ended; not possible
-/// with a sketch that sends frames.
-pub(super) fn hear(world: &Path, elf: &Path, example: &Example, seconds: u32, causes: bool) -> Result<Heard> {
-    let (times, own_mm) = echo_times(example.modules())?;
-    let options: &[&str] = if causes { &["--pulses"] } else { &[] };
-    hear_by(&mut command(world, options, elf, seconds, &times, &example.pins()), seconds, &own_mm)
-        .with_context(|| example.name)
-}
-
-/// Runs a sketch by a command of [`command`], where each module should measure these distances.
-pub(super) fn hear_by(command: &mut Command, seconds: u32, own_mm: &BTreeMap<usize, u32>) -> Result<Heard> {
-    let ran = command.output()?;
-    ensure!(ran.status.success(), "the simulated world: {}", ran.status);
-    let mut heard = Heard::of(&String::from_utf8_lossy(&ran.stdout), own_mm);
-    heard.seconds = seconds;
-    heard.frames(&ran.stdout, own_mm).map_err(Error::msg)?;
-    Ok(heard)
-}
-
 impl Heard {
-    /// The figures in the output of a sketch and of the world, with the distance that each module should measure.
-    pub(super) fn of(said: &str, own_mm: &BTreeMap<usize, u32>) -> Self {
-        let mut heard = Self::default();
-        // The cause that ended each module's last pulse, and its width as a distance; a sketch prints the reading
+    /// Counts the readings in the output of a sketch and of the world: those that the world has read from the board's
+    /// registers, if there are any, else those that the sketch prints.
+    fn of(said: &str, own_mm: &BTreeMap<usize, u32>) -> Self {
+        let by_world = said.contains("world read ");
+        let mut heard = Self { says_so: said.contains("too slow"), ..Self::default() };
+        // The width of each module's last pulse, as a distance, if its own sound ended it; a sketch prints the reading
         // before the module fires again.
-        let mut causes: BTreeMap<usize, (usize, u32)> = BTreeMap::new();
+        let mut own_pulses = BTreeMap::new();
         for line in said.lines() {
             let words: Vec<&str> = line.split_whitespace().collect();
             let numbers = || words.iter().skip(2).filter_map(|word| word.parse().ok());
@@ -159,21 +152,18 @@ impl Heard {
                 ["world", "firings", ..] => heard.firings = numbers().collect(),
                 ["world", "ignored", ..] => heard.ignored = numbers().sum(),
                 ["world", "stack", ..] => heard.stack = numbers().sum(),
-                ["world", "interrupts", ..] => heard.interrupts = numbers().sum(),
                 ["world", "pulse", module, cause, us] => {
-                    let cause = CAUSES.iter().position(|known| *known == cause);
-                    if let (Ok(module), Some(cause), Ok(us)) = (module.parse(), cause, us.parse::<u32>()) {
-                        causes.insert(module, (cause, us * 1716 / 10_000));
-                    }
+                    let us = us.parse::<u32>().ok().filter(|_| cause == "own");
+                    own_pulses.insert(module, us.map(|us| us * 1716 / 10_000));
                 }
                 ["slow", ms] => heard.slow_ms = heard.slow_ms.or(ms.parse().ok()),
-                [module, distance] | [module, distance, "cm"] => {
-                    let (Ok(module), Ok(distance)) = (module.parse::<usize>(), distance.parse::<u32>()) else {
-                        continue;
-                    };
-                    let mm = if words.len() == 3 { 10 * distance } else { distance };
-                    let cause = causes.get(&module).copied();
-                    heard.accept(own_mm, module.wrapping_sub(1), mm, cause);
+                ["world", "read", module, distance] | [module, distance] | [module, distance, "cm"]
+                    if by_world == (words.len() == 4) =>
+                {
+                    if let (Ok(number), Ok(distance)) = (module.parse::<usize>(), distance.parse::<u32>()) {
+                        let mm = if words.len() == 3 { 10 * distance } else { distance };
+                        heard.accept(own_mm, number.wrapping_sub(1), mm, own_pulses.get(module).copied().flatten());
+                    }
                 }
                 _ => {}
             }
@@ -192,8 +182,8 @@ impl Heard {
         (share(self.accepted, compared.sum()), worst)
     }
 
-    /// Counts a reading of a module, from 0: its width as a distance, and the cause of its end, if known.
-    fn accept(&mut self, own_mm: &BTreeMap<usize, u32>, module: usize, mm: u32, cause: Option<(usize, u32)>) {
+    /// Counts a reading of a module, from 0, and the width as a distance of its pulse if its own sound ended it.
+    fn accept(&mut self, own_mm: &BTreeMap<usize, u32>, module: usize, mm: u32, own_pulse_mm: Option<u32>) {
         self.accepted += 1;
         *self.by_module.entry(module).or_default() += 1;
         if own_mm.get(&module).is_some_and(|own| own.abs_diff(mm) <= OFF_MM) {
@@ -201,11 +191,7 @@ impl Heard {
             return;
         }
         self.wrong += 1;
-        let Some((cause, width_mm)) = cause else { return };
-        if let Some(count) = self.by_cause.get_mut(cause) {
-            *count += 1;
-        }
-        self.own_later += u32::from(CAUSES[cause] == "own" && width_mm.abs_diff(mm) <= OFF_MM);
+        self.own_later += u32::from(own_pulse_mm.is_some_and(|width_mm| width_mm.abs_diff(mm) <= OFF_MM));
     }
 
     /// The figures of a sketch with other work. An own later echo that was measured correctly is not wrong.
@@ -251,17 +237,6 @@ impl Heard {
     /// The share of accepted readings that are wrong, in percent.
     pub(super) fn wrong_percent(&self) -> f64 {
         100.0 * f64::from(self.wrong) / f64::from(self.accepted.max(1))
-    }
-
-    /// The columns of the table beside NewPing.
-    pub(super) fn row_beside_newping(&self) -> String {
-        let per_second = |count: u32| format!("{:.1}", f64::from(count) / f64::from(self.seconds));
-        let share = |count: u32| format!("{:.1} %", 100.0 * f64::from(count) / f64::from(self.accepted.max(1)));
-        let mut columns = vec![self.stack.to_string(), format!("{:.1} %", f64::from(self.interrupts) / 1e4)];
-        columns.extend([self.firings.iter().sum(), self.accepted, self.accepted - self.wrong].map(per_second));
-        columns.push(share(self.wrong));
-        columns.extend(self.by_cause.map(share));
-        columns.join(" | ")
     }
 
     /// The columns of the table.

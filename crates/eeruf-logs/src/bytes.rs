@@ -14,6 +14,14 @@ pub(crate) enum Order {
     Big,
 }
 
+/// Kind of a number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Number {
+    Unsigned,
+    Signed,
+    Float,
+}
+
 /// The rest of a slice.
 #[derive(Clone, Copy)]
 pub(crate) struct Bytes<'a> {
@@ -66,8 +74,21 @@ impl<'a> Bytes<'a> {
         self.array().map(u64::from_le_bytes)
     }
 
-    pub(crate) fn f32(&mut self) -> Option<f32> {
-        self.array().map(f32::from_le_bytes)
+    /// A number of up to 8 bytes.
+    pub(crate) fn number(&mut self, kind: Number, size: usize) -> Option<f64> {
+        let mut bytes = [0; 8];
+        let number = bytes.get_mut(..size)?;
+        number.copy_from_slice(self.take(size)?);
+        if self.order == Order::Big {
+            number.reverse();
+        }
+        let (unsigned, unused) = (u64::from_le_bytes(bytes), 64 - 8 * size.max(1));
+        Some(match kind {
+            Number::Unsigned => unsigned as f64,
+            Number::Signed => ((unsigned << unused).cast_signed() >> unused) as f64,
+            Number::Float if size == 4 => f32::from_bits(unsigned as u32).into(),
+            Number::Float => f64::from_bits(unsigned),
+        })
     }
 
     /// Bytes that follow their number, a `u32`.

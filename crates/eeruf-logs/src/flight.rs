@@ -77,16 +77,7 @@ pub(crate) fn read(flight: Flight, input: &mut dyn Read, file: &Path, sink: &mut
             sink.report.sensors.len() - 1
         });
         sink.report.messages += 1;
-        sink.reading(&LogReading {
-            sensor,
-            at_ns: Some(of.at_us.saturating_mul(1000)),
-            radiation: 0,
-            field_of_view_rad: 0.0,
-            min_range_m: 0.0,
-            max_range_m: of.max_m,
-            range_m,
-            variance: None,
-        });
+        sink.reading(&LogReading::new(sensor, Some(of.at_us.saturating_mul(1000)), range_m, of.max_m));
     };
     let damaged = match flight {
         Flight::DataFlash => data_flash(&mut input, &mut each),

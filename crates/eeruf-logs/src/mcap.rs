@@ -9,7 +9,7 @@ use std::path::Path;
 
 use crate::bytes::{Bytes, Input, Order};
 use crate::chunks::Chunks;
-use crate::message::Encoding;
+use crate::schema::Encoding;
 use crate::sink::Sink;
 use crate::topics::Topic;
 use crate::unzstd::{LARGEST_MESSAGE, Unzstd};

@@ -57,6 +57,20 @@ pub enum Echo {
 }
 
 impl LogReading {
+    /// A reading by ultrasound, from a log that says no more; it means no echo from `max_range_m` on, if that is not 0.
+    pub(crate) const fn new(sensor: usize, at_ns: Option<u64>, range_m: f64, max_range_m: f64) -> Self {
+        Self {
+            sensor,
+            at_ns,
+            radiation: 0,
+            field_of_view_rad: 0.0,
+            min_range_m: 0.0,
+            max_range_m,
+            range_m,
+            variance: None,
+        }
+    }
+
     /// The meaning of the range by REP 117.
     pub fn echo(&self) -> Echo {
         let Self { range_m, min_range_m, max_range_m, .. } = *self;

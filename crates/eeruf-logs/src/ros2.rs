@@ -1,10 +1,8 @@
-//! The messages of ROS 2 that are written, with their definitions: a name, the text of the fields, and the definitions
-//! of nested messages.
+//! The messages of ROS 2 that are written, with their definitions.
 
 use std::fmt::Write;
 
 use crate::cdr::Cdr;
-use crate::firing_messages::{FIRING, FIRING_FIELDS};
 use crate::firings::Firing;
 use crate::reading::LogReading;
 
@@ -74,102 +72,36 @@ pub struct Marker {
     pub lifetime_ns: u64,
 }
 
-const HEADER: (&str, &str) = ("std_msgs/Header", "builtin_interfaces/Time stamp\nstring frame_id\n");
-const TIME: (&str, &str) = ("builtin_interfaces/Time", "int32 sec\nuint32 nanosec\n");
-const DURATION: (&str, &str) = ("builtin_interfaces/Duration", "int32 sec\nuint32 nanosec\n");
-const VECTOR: (&str, &str) = ("geometry_msgs/Vector3", "float64 x\nfloat64 y\nfloat64 z\n");
-const POINT: (&str, &str) = ("geometry_msgs/Point", "float64 x\nfloat64 y\nfloat64 z\n");
-const QUATERNION: (&str, &str) = ("geometry_msgs/Quaternion", "float64 x\nfloat64 y\nfloat64 z\nfloat64 w\n");
-const POSE: (&str, &str) =
-    ("geometry_msgs/Pose", "geometry_msgs/Point position\ngeometry_msgs/Quaternion orientation\n");
+/// Definitions of the messages, each after its name.
+const DEFINITIONS: &str = include_str!("definitions.msg");
 
-/// A message type: its name, its fields, and their types.
-pub(crate) struct Type {
-    pub(crate) name: &'static str,
-    fields: &'static str,
-    parts: &'static [(&'static str, &'static str)],
-}
+/// Names of the messages that are written.
+pub(crate) const RANGE: &str = "sensor_msgs/msg/Range";
+pub(crate) const FIRING: &str = "eeruf_msgs/msg/Firing";
+pub(crate) const TRANSFORMS: &str = "tf2_msgs/msg/TFMessage";
+pub(crate) const ODOMETRY: &str = "nav_msgs/msg/Odometry";
+pub(crate) const MARKERS: &str = "visualization_msgs/msg/MarkerArray";
 
-impl Type {
-    /// The definition in the format `ros2msg`.
-    pub(crate) fn definition(&self) -> String {
-        let mut text = self.fields.to_owned();
-        for (name, fields) in self.parts {
-            let _ = write!(text, "{}\nMSG: {name}\n{fields}", "=".repeat(80));
+/// The definition of a message with those of its nested messages, in the format `ros2msg`.
+pub(crate) fn definition(name: &str) -> String {
+    let (mut names, mut text, mut next) = (vec![name.replace("/msg/", "/")], String::new(), 0);
+    while let Some(name) = names.get(next) {
+        if next > 0 {
+            _ = write!(text, "{}\nMSG: {name}\n", "=".repeat(80));
         }
-        text
+        let of_name = |part: &'static str| part.strip_prefix(name)?.strip_prefix('\n');
+        let fields = DEFINITIONS.split("MSG: ").find_map(of_name).unwrap_or_default();
+        text += fields;
+        for line in fields.lines() {
+            let of = line.split([' ', '[']).next().unwrap_or_default();
+            if of.contains('/') && !names.iter().any(|name| name == of) {
+                names.push(of.to_owned());
+            }
+        }
+        next += 1;
     }
+    text
 }
-
-pub(crate) const RANGE: Type = Type {
-    name: "sensor_msgs/msg/Range",
-    fields: "std_msgs/Header header\nuint8 ULTRASOUND=0\nuint8 INFRARED=1\nuint8 radiation_type\n\
-             float32 field_of_view\nfloat32 min_range\nfloat32 max_range\nfloat32 range\nfloat32 variance\n",
-    parts: &[HEADER, TIME],
-};
-
-pub(crate) const FIRINGS: Type = Type { name: FIRING, fields: FIRING_FIELDS, parts: &[HEADER, TIME] };
-
-pub(crate) const TRANSFORMS: Type = Type {
-    name: "tf2_msgs/msg/TFMessage",
-    fields: "geometry_msgs/TransformStamped[] transforms\n",
-    parts: &[
-        (
-            "geometry_msgs/TransformStamped",
-            "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/Transform transform\n",
-        ),
-        ("geometry_msgs/Transform", "geometry_msgs/Vector3 translation\ngeometry_msgs/Quaternion rotation\n"),
-        VECTOR,
-        QUATERNION,
-        HEADER,
-        TIME,
-    ],
-};
-
-pub(crate) const ODOMETRY: Type = Type {
-    name: "nav_msgs/msg/Odometry",
-    fields: "std_msgs/Header header\nstring child_frame_id\ngeometry_msgs/PoseWithCovariance pose\n\
-             geometry_msgs/TwistWithCovariance twist\n",
-    parts: &[
-        ("geometry_msgs/PoseWithCovariance", "geometry_msgs/Pose pose\nfloat64[36] covariance\n"),
-        ("geometry_msgs/TwistWithCovariance", "geometry_msgs/Twist twist\nfloat64[36] covariance\n"),
-        ("geometry_msgs/Twist", "geometry_msgs/Vector3 linear\ngeometry_msgs/Vector3 angular\n"),
-        POSE,
-        POINT,
-        QUATERNION,
-        VECTOR,
-        HEADER,
-        TIME,
-    ],
-};
-
-pub(crate) const MARKERS: Type = Type {
-    name: "visualization_msgs/msg/MarkerArray",
-    fields: "visualization_msgs/Marker[] markers\n",
-    parts: &[
-        (
-            "visualization_msgs/Marker",
-            "int32 CYLINDER=3\nint32 LINE_STRIP=4\nint32 LINE_LIST=5\nint32 ADD=0\nint32 DELETEALL=3\n\
-             std_msgs/Header header\nstring ns\nint32 id\nint32 type\nint32 action\ngeometry_msgs/Pose pose\n\
-             geometry_msgs/Vector3 scale\nstd_msgs/ColorRGBA color\nbuiltin_interfaces/Duration lifetime\n\
-             bool frame_locked\ngeometry_msgs/Point[] points\nstd_msgs/ColorRGBA[] colors\n\
-             string texture_resource\nsensor_msgs/CompressedImage texture\n\
-             visualization_msgs/UVCoordinate[] uv_coordinates\nstring text\nstring mesh_resource\n\
-             visualization_msgs/MeshFile mesh_file\nbool mesh_use_embedded_materials\n",
-        ),
-        ("std_msgs/ColorRGBA", "float32 r\nfloat32 g\nfloat32 b\nfloat32 a\n"),
-        ("sensor_msgs/CompressedImage", "std_msgs/Header header\nstring format\nuint8[] data\n"),
-        ("visualization_msgs/UVCoordinate", "float32 u\nfloat32 v\n"),
-        ("visualization_msgs/MeshFile", "string filename\nuint8[] data\n"),
-        POSE,
-        POINT,
-        QUATERNION,
-        VECTOR,
-        DURATION,
-        HEADER,
-        TIME,
-    ],
-};
 
 pub(crate) fn range(out: &mut Cdr, frame: &str, reading: &LogReading) {
     let LogReading { radiation, field_of_view_rad, min_range_m, max_range_m, range_m, variance, .. } = *reading;
@@ -179,7 +111,7 @@ pub(crate) fn range(out: &mut Cdr, frame: &str, reading: &LogReading) {
     out.f32s([field_of_view_rad, min, max, range, variance.unwrap_or(0.0)]);
 }
 
-/// The fields of [`FIRINGS`]; missing values are 0, and a flag before each says so.
+/// Writes the fields of [`FIRING`]; missing values are 0, and a flag before each says so.
 pub(crate) fn firing(out: &mut Cdr, at_ns: u64, clock: &str, firing: &Firing) {
     let Firing { sensor, fired_us, period, phase, t_echo_us, g_us_ms, .. } = *firing;
     out.header(at_ns, "");

@@ -7,7 +7,7 @@ use rusqlite::{Connection, OpenFlags};
 use saphyr::{LoadableYamlNode, Yaml};
 
 use crate::form::{self, Form};
-use crate::message::Encoding;
+use crate::schema::Encoding;
 use crate::sink::Sink;
 use crate::topics::Topic;
 use crate::unzstd::{LARGEST_MESSAGE, Unzstd};

@@ -1,24 +1,29 @@
-//! Message definitions of ROS 1 and ROS 2, and numbers at a path of a message that has one.
+//! Message definitions of ROS 1 and ROS 2, and values at paths of messages that have one.
 
 use std::collections::HashMap;
 
-use crate::bytes::Bytes;
+use crate::bytes::{Bytes, Number, Order};
 
 /// Largest depth of nested types.
 const DEEPEST: usize = 16;
+/// Largest number of fields of a message with its nested messages.
+const MOST_FIELDS: usize = 1 << 12;
+/// Largest number of values of a message.
+const MOST_VALUES: usize = 1 << 16;
+
+/// Encoding of a topic's messages.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Encoding {
+    /// ROS 2, which aligns numbers and ends texts with a zero.
+    Cdr,
+    /// ROS 1, whose headers have a number.
+    Ros1,
+}
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Primitive {
-    U8,
-    I8,
-    U16,
-    I16,
-    U32,
-    I32,
-    U64,
-    I64,
-    F32,
-    F64,
+enum Primitive {
+    /// A number of this size in bytes.
+    Number(Number, usize),
     Text,
     /// Seconds and nanoseconds.
     Time,
@@ -48,29 +53,19 @@ struct Field {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Schema(HashMap<String, Vec<Field>>);
 
-/// The header of a message: stamp in nanoseconds and frame.
-#[derive(Default)]
-pub(crate) struct Header {
-    pub(crate) stamp_ns: u64,
-    pub(crate) frame: String,
-}
-
 fn primitive(name: &str) -> Option<Primitive> {
-    Some(match name {
-        "bool" | "byte" | "char" | "uint8" | "octet" => Primitive::U8,
-        "int8" => Primitive::I8,
-        "uint16" => Primitive::U16,
-        "int16" => Primitive::I16,
-        "uint32" => Primitive::U32,
-        "int32" => Primitive::I32,
-        "uint64" => Primitive::U64,
-        "int64" => Primitive::I64,
-        "float32" => Primitive::F32,
-        "float64" => Primitive::F64,
-        "time" | "duration" => Primitive::Time,
-        _ if name == "string" || name.starts_with("string<=") => Primitive::Text,
-        _ => return None,
-    })
+    let number = |kind, prefix: &str| {
+        let bits = name.strip_prefix(prefix)?.parse().ok().filter(|bits| [8, 16, 32, 64].contains(bits))?;
+        Some(Primitive::Number(kind, bits / 8))
+    };
+    match name {
+        "bool" | "byte" | "char" | "octet" => Some(Primitive::Number(Number::Unsigned, 1)),
+        "time" | "duration" => Some(Primitive::Time),
+        _ if name == "string" || name.starts_with("string<=") => Some(Primitive::Text),
+        _ => number(Number::Unsigned, "uint")
+            .or_else(|| number(Number::Signed, "int"))
+            .or_else(|| number(Number::Float, "float")),
+    }
 }
 
 impl Schema {
@@ -118,149 +113,229 @@ impl Schema {
 
     /// The paths to numbers, with `[]` after arrays, of at most two names.
     pub(crate) fn number_paths(&self) -> Vec<String> {
-        let mut paths = vec![];
-        let suffix = |field: &Field| if field.length == Length::One { "" } else { "[]" };
-        for field in &self.0[""] {
-            let path = format!("{}{}", field.name, suffix(field));
-            match &field.of {
-                Type::Primitive(Primitive::Text | Primitive::Time) => {}
-                Type::Primitive(_) => paths.push(path),
-                Type::Message(of) => {
-                    for inner in self.fields(of).unwrap_or_default() {
-                        if matches!(inner.of, Type::Primitive(of) if !matches!(of, Primitive::Text | Primitive::Time)) {
-                            paths.push(format!("{path}.{}{}", inner.name, suffix(inner)));
-                        }
-                    }
-                }
+        let path = |field: &Field| format!("{}{}", field.name, if field.length == Length::One { "" } else { "[]" });
+        let is_number = |field: &&Field| matches!(field.of, Type::Primitive(Primitive::Number(..)));
+        let of = |field: &Field| match &field.of {
+            Type::Message(of) => {
+                let inner = self.fields(of).unwrap_or_default().iter().filter(is_number);
+                inner.map(|inner| format!("{}.{}", path(field), path(inner))).collect()
             }
-        }
-        paths
+            Type::Primitive(_) => Some(field).filter(is_number).map(path).into_iter().collect::<Vec<_>>(),
+        };
+        self.0[""].iter().flat_map(of).collect()
     }
 
-    /// The numbers at a path of a message, and its header; `None` if the message does not fit the definition.
-    pub(crate) fn numbers(
+    /// A decoder for the values at these paths; `None` if a path or a nested type is missing.
+    pub(crate) fn decoder(&self, paths: &[&str]) -> Option<Decoder> {
+        let wanted: Vec<_> = paths.iter().copied().enumerate().collect();
+        let (mut fields, mut found) = (0, 0);
+        let steps = self.steps("", &wanted, 0, &mut fields, &mut found)?;
+        (found == paths.len()).then_some(Decoder(steps))
+    }
+
+    fn steps(
         &self,
-        path: &[String],
-        message: Bytes<'_>,
-        cdr: Option<usize>,
-    ) -> Option<(Header, Vec<f64>)> {
-        let mut walk = Walk { schema: self, rest: message, cdr, header: Header::default(), numbers: vec![] };
-        walk.message("", Some(path), 0)?;
+        of: &str,
+        wanted: &[(usize, &str)],
+        depth: usize,
+        fields: &mut usize,
+        found: &mut usize,
+    ) -> Option<Vec<Step>> {
+        let step = |field: &Field| {
+            *fields += 1;
+            let inner = |&(place, path): &(usize, _)| {
+                let (name, rest) = str::split_once(path, '.').unwrap_or((path, ""));
+                (name == field.name).then_some((place, rest))
+            };
+            let inner: Vec<_> = wanted.iter().filter_map(inner).collect();
+            let of = match &field.of {
+                Type::Message(of) if depth == 0 && of.rsplit('/').next() == Some("Header") => Of::Header,
+                _ if depth > DEEPEST || *fields > MOST_FIELDS => return None,
+                Type::Message(of) => Of::Message(self.steps(of, &inner, depth + 1, fields, found)?),
+                Type::Primitive(of) => {
+                    let place = inner.first().filter(|inner| inner.1.is_empty()).map(|inner| inner.0);
+                    *found += usize::from(place.is_some());
+                    Of::Primitive(*of, place)
+                }
+            };
+            Some(Step { of, length: field.length })
+        };
+        self.fields(of)?.iter().map(step).collect()
+    }
+}
+
+/// A field that is decoded.
+#[derive(Debug)]
+struct Step {
+    of: Of,
+    length: Length,
+}
+
+#[derive(Debug)]
+enum Of {
+    Header,
+    Message(Vec<Step>),
+    /// A primitive, with the place of its path among the wanted ones.
+    Primitive(Primitive, Option<usize>),
+}
+
+/// A decoder for messages of one type.
+#[derive(Debug)]
+pub(crate) struct Decoder(Vec<Step>);
+
+/// A value at a wanted path.
+#[derive(Clone, Copy)]
+enum Value<'a> {
+    Number(f64),
+    Text(&'a [u8]),
+}
+
+/// The header of a message, and its values at the wanted paths.
+#[derive(Default)]
+pub(crate) struct Decoded<'a> {
+    /// The stamp in nanoseconds, 0 for none.
+    pub(crate) stamp_ns: u64,
+    pub(crate) frame: &'a [u8],
+    /// Values, each with the place of its path.
+    values: Vec<(usize, Value<'a>)>,
+    /// True if an array was left out because it is too long.
+    pub(crate) is_too_long: bool,
+}
+
+impl Decoder {
+    /// Decodes a message, with arrays of at most `most` elements; `None` if it does not fit the definition.
+    pub(crate) fn decode<'a>(&self, encoding: Encoding, message: &'a [u8], most: usize) -> Option<Decoded<'a>> {
+        let (rest, cdr) = match encoding {
+            Encoding::Ros1 => (Bytes::new(message, Order::Little), None),
+            Encoding::Cdr => {
+                let (header, body) = message.split_at_checked(4)?;
+                // Plain CDR, of the first and of the second version, for types that do not change.
+                let (order, largest) = match (header[0], header[1]) {
+                    (0, 0) => (Order::Big, 8),
+                    (0, 1) => (Order::Little, 8),
+                    (0, 6) => (Order::Big, 4),
+                    (0, 7) => (Order::Little, 4),
+                    _ => return None,
+                };
+                (Bytes::new(body, order), Some(largest))
+            }
+        };
+        let mut walk = Walk { rest, cdr, most, found: Decoded { values: Vec::with_capacity(8), ..Decoded::default() } };
+        walk.message(&self.0)?;
         // CDR may pad a message to a multiple of four.
         let padding = if cdr.is_some() { 3 } else { 0 };
-        (walk.rest.left() <= padding).then_some((walk.header, walk.numbers))
+        (walk.rest.left() <= padding).then_some(walk.found)
     }
 }
 
-struct Walk<'s, 'b> {
-    schema: &'s Schema,
-    rest: Bytes<'b>,
+impl<'a> Decoded<'a> {
+    fn values(&self, place: usize) -> impl Iterator<Item = Value<'a>> {
+        self.values.iter().filter(move |value| value.0 == place).map(|value| value.1)
+    }
+
+    /// The numbers at a path, given by its place.
+    pub(crate) fn numbers(&self, place: usize) -> impl Iterator<Item = f64> {
+        self.values(place).filter_map(|value| if let Value::Number(number) = value { Some(number) } else { None })
+    }
+
+    /// The first number at a path, 0 for none.
+    pub(crate) fn number(&self, place: usize) -> f64 {
+        self.numbers(place).next().unwrap_or(0.0)
+    }
+
+    /// The text at a path; invalid bytes are replaced.
+    pub(crate) fn text(&self, place: usize) -> String {
+        let text = self.values(place).find_map(|value| if let Value::Text(text) = value { Some(text) } else { None });
+        String::from_utf8_lossy(text.unwrap_or_default()).into_owned()
+    }
+}
+
+struct Walk<'a> {
+    rest: Bytes<'a>,
     /// The largest alignment of CDR; ROS 1 has none.
     cdr: Option<usize>,
-    header: Header,
-    numbers: Vec<f64>,
+    most: usize,
+    found: Decoded<'a>,
 }
 
-impl Walk<'_, '_> {
+impl<'a> Walk<'a> {
     fn align(&mut self, size: usize) -> Option<()> {
-        match self.cdr {
-            Some(most) => self.rest.align(size.min(most)),
-            None => Some(()),
-        }
+        self.cdr.map_or(Some(()), |largest| self.rest.align(size.min(largest)))
     }
 
-    fn message(&mut self, of: &str, wanted: Option<&[String]>, depth: usize) -> Option<()> {
-        /// Largest number of numbers in one message.
-        const MOST: usize = 1 << 16;
-        if depth > DEEPEST {
-            return None;
-        }
-        let schema = self.schema;
-        let fields = schema.fields(of)?;
-        // An empty message has one byte in CDR.
-        for field in fields {
-            let inner = match wanted {
-                Some([first, rest @ ..]) if *first == field.name => Some(rest),
-                _ => None,
-            };
-            let is_header =
-                depth == 0 && matches!(&field.of, Type::Message(of) if of.rsplit('/').next() == Some("Header"));
-            let count = match field.length {
+    fn u32(&mut self) -> Option<u32> {
+        self.align(4)?;
+        self.rest.u32()
+    }
+
+    fn text(&mut self) -> Option<&'a [u8]> {
+        self.align(4)?;
+        let text = self.rest.counted()?;
+        Some(if self.cdr.is_some() { text.strip_suffix(&[0]).unwrap_or(text) } else { text })
+    }
+
+    fn message(&mut self, steps: &[Step]) -> Option<()> {
+        for Step { of, length } in steps {
+            let count = match *length {
                 Length::One => 1,
                 Length::Fixed(count) => count,
-                Length::Counted => {
-                    self.align(4)?;
-                    self.rest.u32()? as usize
-                }
+                Length::Counted => self.u32()? as usize,
             };
             if count > self.rest.left() {
                 return None;
             }
-            if is_header {
-                self.read_header()?;
-                continue;
-            }
-            for _ in 0..count {
-                match &field.of {
-                    Type::Message(of) => self.message(of, inner, depth + 1)?,
-                    Type::Primitive(of) => {
-                        let number = self.primitive(*of)?;
-                        if inner.is_some_and(<[String]>::is_empty) && self.numbers.len() < MOST {
-                            self.numbers.push(number);
-                        }
-                    }
+            match of {
+                Of::Header => self.header()?,
+                Of::Message(steps) => (0..count).try_for_each(|_| self.message(steps))?,
+                Of::Primitive(of, None) => self.values(*of, count, None)?,
+                Of::Primitive(of, place) => {
+                    self.found.is_too_long |= count > self.most;
+                    self.values(*of, count, place.filter(|_| count <= self.most))?;
                 }
             }
         }
         Some(())
     }
 
-    fn read_header(&mut self) -> Option<()> {
-        self.align(4)?;
+    fn header(&mut self) -> Option<()> {
         if self.cdr.is_none() {
             self.rest.u32()?; // A sequence number.
         }
-        let (seconds, nanoseconds) = (self.rest.u32()?, self.rest.u32()?);
-        self.header.stamp_ns = u64::from(seconds) * 1_000_000_000 + u64::from(nanoseconds);
-        self.header.frame = self.rest.text()?.trim_end_matches('\0').to_owned();
+        let (seconds, nanoseconds) = (self.u32()?, self.u32()?);
+        self.found.stamp_ns = u64::from(seconds) * 1_000_000_000 + u64::from(nanoseconds);
+        self.found.frame = self.text()?;
         Some(())
     }
 
-    fn primitive(&mut self, of: Primitive) -> Option<f64> {
-        let size = match of {
-            Primitive::U8 | Primitive::I8 => 1,
-            Primitive::U16 | Primitive::I16 => 2,
-            Primitive::U64 | Primitive::I64 | Primitive::F64 => 8,
-            _ => 4,
-        };
-        self.align(size)?;
-        Some(match of {
-            Primitive::U8 => self.rest.u8()?.into(),
-            Primitive::I8 => self.rest.u8()?.cast_signed().into(),
-            Primitive::U16 => self.rest.u16()?.into(),
-            Primitive::I16 => self.rest.u16()?.cast_signed().into(),
-            Primitive::U32 => self.rest.u32()?.into(),
-            Primitive::I32 => self.rest.u32()?.cast_signed().into(),
-            Primitive::U64 => self.rest.u64()? as f64,
-            Primitive::I64 => self.rest.u64()?.cast_signed() as f64,
-            Primitive::F32 => self.rest.f32()?.into(),
-            Primitive::F64 => f64::from_bits(self.rest.u64()?),
-            Primitive::Text => {
-                self.rest.counted()?;
-                0.0
+    fn values(&mut self, of: Primitive, count: usize, place: Option<usize>) -> Option<()> {
+        if let (Primitive::Number(_, size), None, 1..) = (of, place, count) {
+            self.align(size)?;
+            return self.rest.take(size.checked_mul(count)?).map(drop);
+        }
+        for _ in 0..count {
+            let value = match of {
+                Primitive::Number(kind, size) => {
+                    self.align(size)?;
+                    Value::Number(self.rest.number(kind, size)?)
+                }
+                Primitive::Text => Value::Text(self.text()?),
+                Primitive::Time => {
+                    self.align(4)?;
+                    self.rest.take(8)?;
+                    continue;
+                }
+            };
+            if let Some(place) = place.filter(|_| self.found.values.len() < MOST_VALUES) {
+                self.found.values.push((place, value));
             }
-            Primitive::Time => {
-                self.rest.take(8)?;
-                0.0
-            }
-        })
+        }
+        Some(())
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::bytes::Order;
 
     #[test]
     fn numbers_stand_at_a_path_of_nested_arrays() {
@@ -277,14 +352,15 @@ mod tests {
             bytes.extend(range.to_le_bytes());
         }
         bytes.extend(7.0_f64.to_le_bytes());
-        let path = ["sonars".to_owned(), "range".to_owned()];
-        let read = |bytes: &[u8]| schema.numbers(&path, Bytes::new(bytes, Order::Little), None);
-        let (header, numbers) = read(&bytes).unwrap();
-        assert_eq!((header.stamp_ns, header.frame.as_str(), &numbers[..]), (2_000_000_003, "f", &[1.5, 2.5][..]));
+        let decoder = schema.decoder(&["sonars.range", "gain"]).unwrap();
+        let found = decoder.decode(Encoding::Ros1, &bytes, 9).unwrap();
+        assert_eq!((found.stamp_ns, found.frame, found.number(1)), (2_000_000_003, &b"f"[..], 7.0));
+        assert_eq!(found.numbers(0).collect::<Vec<_>>(), [1.5, 2.5]);
         for length in 0..bytes.len() {
-            assert!(read(&bytes[..length]).is_none(), "{length}");
+            assert!(decoder.decode(Encoding::Ros1, &bytes[..length], 9).is_none(), "{length}");
         }
         bytes.push(0);
-        assert!(read(&bytes).is_none());
+        assert!(decoder.decode(Encoding::Ros1, &bytes, 9).is_none());
+        assert!(schema.decoder(&["sonars.other"]).is_none());
     }
 }

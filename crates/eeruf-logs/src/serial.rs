@@ -97,16 +97,9 @@ pub(crate) fn read(input: impl Read, file: &Path, options: &Options, sink: &mut 
             sink.report.sensors.push(Sensor { topic, frame: String::new(), beam: None });
         }
         sink.report.messages += 1;
-        sink.reading(&LogReading {
-            sensor,
-            at_ns: u64::try_from(at_us).ok().map(|us| 1000 * us),
-            radiation: 0,
-            field_of_view_rad: 0.0,
-            min_range_m: 0.0,
-            max_range_m: options.no_echo_m,
-            range_m: firing.t_echo.map_or(f64::INFINITY, |us| f64::from(us.as_micros()) * metres),
-            variance: None,
-        });
+        let at_ns = u64::try_from(at_us).ok().map(|us| 1000 * us);
+        let range_m = firing.t_echo.map_or(f64::INFINITY, |us| f64::from(us.as_micros()) * metres);
+        sink.reading(&LogReading::new(sensor, at_ns, range_m, options.no_echo_m));
     });
     let line = line.map_err(|error| FileError::reading(file, &error))?;
     if let Some(damage) = line.damage() {

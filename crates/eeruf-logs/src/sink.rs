@@ -69,6 +69,8 @@ pub(crate) struct Topics {
     /// Number of messages of any type, readable or not.
     pub(crate) found: u64,
     pub(crate) buffer: Vec<LogReading>,
+    /// The firings of a ring, if they are asked for.
+    pub(crate) firings: Option<crate::firing_messages::FiringMessages>,
     /// Topics with readings.
     pub(crate) names: std::collections::HashSet<String>,
     /// Topics about which a warning was given.

@@ -1,16 +1,21 @@
 //! Messages of topics, and the assignment of their readings to sensors.
 
 use std::path::Path;
+use std::rc::Rc;
 
-use crate::message::{Encoding, Kind, MAX_BEAMS, Undecoded};
+use crate::message::{Kind, MAX_BEAMS, Of, Undecoded};
 use crate::options::RangeUnit;
 use crate::reading::Sensor;
+use crate::ros2::FIRING;
+use crate::schema::Encoding;
 use crate::sink::{Guess, Sink, Skipped, finite};
 
 /// One topic of one file.
 pub(crate) struct Topic {
     name: String,
-    decoding: Option<(Encoding, Kind)>,
+    decoding: Option<Rc<(Encoding, Kind)>>,
+    /// True for firings of a ring, if they are asked for.
+    has_firings: bool,
     frames: Vec<Frame>,
     /// Index of the frame after the last one, since rings often fire in turn.
     next: usize,
@@ -47,7 +52,7 @@ impl Sink<'_> {
             }
         };
         let decoding = match (kind, encoding) {
-            (Ok(kind), Some(encoding)) => Some((encoding, kind)),
+            (Ok(kind), Some(encoding)) => Some(Rc::new((encoding, kind))),
             (Ok(_), None) => {
                 skip(format!("{type_name} in an encoding that is neither cdr nor ros1"));
                 None
@@ -67,6 +72,7 @@ impl Sink<'_> {
         Topic {
             name: name.to_owned(),
             decoding,
+            has_firings: type_name == FIRING && self.of_topics.firings.is_some(),
             frames: Vec::new(),
             next: 0,
             undecoded: 0,
@@ -80,7 +86,13 @@ impl Sink<'_> {
 
     /// Adds a message on a topic, recorded at this time.
     pub(crate) fn message(&mut self, topic: &mut Topic, recorded_ns: u64, message: &[u8]) {
-        let Some((encoding, kind)) = topic.decoding.clone() else { return };
+        if topic.has_firings
+            && let Some(firings) = &mut self.of_topics.firings
+        {
+            return firings.message(&topic.name, message);
+        }
+        let Some(decoding) = topic.decoding.clone() else { return };
+        let (encoding, kind) = &*decoding;
         if let Some((base, left_out)) = &mut topic.judged
             && self.of_topics.names.contains(base)
         {
@@ -88,7 +100,7 @@ impl Sink<'_> {
             return;
         }
         self.of_topics.buffer.clear();
-        let frame = match kind.decode(encoding, message, recorded_ns, &mut self.of_topics.buffer) {
+        let frame = match kind.decode(*encoding, message, recorded_ns, &mut self.of_topics.buffer) {
             Ok(frame) => frame,
             Err(Undecoded::Length) => {
                 topic.undecoded += 1;
@@ -99,8 +111,8 @@ impl Sink<'_> {
                 return;
             }
         };
-        match kind {
-            Kind::Range { .. } => {
+        match kind.of {
+            Of::Range => {
                 let infrared = self.of_topics.buffer.first().is_some_and(|reading| reading.radiation == 1);
                 if infrared && !topic.is_asked {
                     topic.infrared += 1;
@@ -108,16 +120,16 @@ impl Sink<'_> {
                 }
                 self.doubt(&topic.name);
             }
-            Kind::Numbers(ref numbers) => self.scale(topic, numbers.unit),
-            Kind::Points(_) | Kind::Points2 => self.scale(topic, Some(RangeUnit::M)),
-            Kind::LaserScan(_) => {}
+            Of::Numbers { unit, .. } => self.scale(topic, unit),
+            Of::Points => self.scale(topic, Some(RangeUnit::M)),
+            Of::LaserScan(_) => {}
         }
         let is_shared = self.of_topics.buffer.len() > 1
             && self.of_topics.buffer.iter().all(|reading| reading.at_ns == self.of_topics.buffer[0].at_ns);
         self.one_time_a_row |= is_shared;
         self.has_own_times |= !is_shared;
         self.report.messages += 1;
-        let at = topic.frame(&frame);
+        let at = topic.frame(frame);
         let frame = &mut topic.frames[at];
         for reading in &mut self.of_topics.buffer {
             let beam = reading.sensor;
@@ -221,9 +233,9 @@ impl Sink<'_> {
 }
 
 impl Topic {
-    /// Returns true if the topic's messages hold readings, judging by their type.
+    /// Returns true if the topic's messages hold readings or firings, judging by their type.
     pub(crate) const fn has_readings(&self) -> bool {
-        self.decoding.is_some()
+        self.decoding.is_some() || self.has_firings
     }
 
     /// The index of a frame among those of the topic.

@@ -11,7 +11,7 @@ use ::mcap::{WriteOptions, Writer};
 use crate::cdr::Cdr;
 use crate::firings::Firing;
 use crate::reading::LogReading;
-use crate::ros2::{self, Marker, Transform, Type};
+use crate::ros2::{self, Marker, Transform};
 use eeruf_files::FileError;
 
 /// An MCAP file, open for writing.
@@ -53,7 +53,7 @@ impl McapWriter {
     /// The file cannot be written.
     pub fn range(&mut self, topic: &str, frame: &str, reading: &LogReading) -> Result<(), FileError> {
         let at_ns = reading.at_ns.unwrap_or(0);
-        self.write(topic, &ros2::RANGE, at_ns, |out| ros2::range(out, frame, reading))
+        self.write(topic, ros2::RANGE, at_ns, |out| ros2::range(out, frame, reading))
     }
 
     /// Writes one firing of a ring to a topic, for [`FiringLog::read`](crate::FiringLog::read), with the name of its
@@ -62,7 +62,7 @@ impl McapWriter {
     /// # Errors
     /// The file cannot be written.
     pub fn firing(&mut self, topic: &str, clock: &str, at_ns: u64, firing: &Firing) -> Result<(), FileError> {
-        self.write(topic, &ros2::FIRINGS, at_ns, |out| ros2::firing(out, at_ns, clock, firing))
+        self.write(topic, ros2::FIRING, at_ns, |out| ros2::firing(out, at_ns, clock, firing))
     }
 
     /// Writes the places of frames, a `tf2_msgs/msg/TFMessage`.
@@ -70,7 +70,7 @@ impl McapWriter {
     /// # Errors
     /// The file cannot be written.
     pub fn transforms(&mut self, topic: &str, at_ns: u64, transforms: &[Transform]) -> Result<(), FileError> {
-        self.write(topic, &ros2::TRANSFORMS, at_ns, |out| ros2::transforms(out, at_ns, transforms))
+        self.write(topic, ros2::TRANSFORMS, at_ns, |out| ros2::transforms(out, at_ns, transforms))
     }
 
     /// Writes a robot's place, and its velocities in its own frame, a `nav_msgs/msg/Odometry`.
@@ -85,7 +85,7 @@ impl McapWriter {
         linear_m_s: [f64; 3],
         angular_rad_s: [f64; 3],
     ) -> Result<(), FileError> {
-        self.write(topic, &ros2::ODOMETRY, at_ns, |out| ros2::odometry(out, at_ns, of, linear_m_s, angular_rad_s))
+        self.write(topic, ros2::ODOMETRY, at_ns, |out| ros2::odometry(out, at_ns, of, linear_m_s, angular_rad_s))
     }
 
     /// Writes markers, as a `visualization_msgs/msg/MarkerArray`.
@@ -93,20 +93,26 @@ impl McapWriter {
     /// # Errors
     /// The file cannot be written.
     pub fn markers(&mut self, topic: &str, at_ns: u64, markers: &[Marker]) -> Result<(), FileError> {
-        self.write(topic, &ros2::MARKERS, at_ns, |out| ros2::markers(out, at_ns, markers))
+        self.write(topic, ros2::MARKERS, at_ns, |out| ros2::markers(out, at_ns, markers))
     }
 
-    fn write(&mut self, topic: &str, of: &Type, at_ns: u64, encode: impl FnOnce(&mut Cdr)) -> Result<(), FileError> {
+    fn write(
+        &mut self,
+        topic: &str,
+        of: &'static str,
+        at_ns: u64,
+        encode: impl FnOnce(&mut Cdr),
+    ) -> Result<(), FileError> {
         let mut message = Cdr::begin(std::mem::take(&mut self.message));
         encode(&mut message);
         self.message = message.bytes();
         if !self.channels.contains_key(topic) {
-            let schema = match self.schemas.get(of.name) {
+            let schema = match self.schemas.get(of) {
                 Some(&schema) => schema,
                 None => {
-                    let added = self.writer.add_schema(of.name, "ros2msg", of.definition().as_bytes());
+                    let added = self.writer.add_schema(of, "ros2msg", ros2::definition(of).as_bytes());
                     let schema = added.map_err(|error| unwritten(&self.file, &error))?;
-                    self.schemas.insert(of.name, schema);
+                    self.schemas.insert(of, schema);
                     schema
                 }
             };

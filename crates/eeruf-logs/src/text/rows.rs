@@ -335,17 +335,8 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
         self.sink.report.messages += 1;
         for (index, range_m) in found {
             let Some(sensor) = sensor_of_row.or(self.sensors[index]) else { continue };
-            let reading = LogReading {
-                sensor,
-                at_ns,
-                radiation: 0,
-                field_of_view_rad: 0.0,
-                min_range_m: least.unwrap_or(0.0),
-                max_range_m: most.unwrap_or(self.options.no_echo_m),
-                range_m,
-                variance: None,
-            };
-            self.sink.reading(&reading);
+            let reading = LogReading::new(sensor, at_ns, range_m, most.unwrap_or(self.options.no_echo_m));
+            self.sink.reading(&LogReading { min_range_m: least.unwrap_or(0.0), ..reading });
         }
         Ok(())
     }

@@ -32,59 +32,23 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-#[cfg(feature = "files")]
-mod bytes;
-#[cfg(feature = "files")]
-mod cdr;
-#[cfg(feature = "files")]
-mod chunks;
 mod diagnose;
 mod doctor;
 #[cfg(feature = "files")]
 mod files;
-#[cfg(feature = "files")]
-mod firing_files;
-#[cfg(feature = "files")]
-mod firing_messages;
-#[cfg(feature = "files")]
-mod firing_text;
 mod firings;
-#[cfg(feature = "files")]
-mod flight;
-#[cfg(feature = "files")]
-mod form;
-#[cfg(feature = "files")]
-mod judging;
-#[cfg(feature = "files")]
-mod mcap;
-#[cfg(feature = "files")]
-mod message;
 mod names;
 mod options;
+mod paths;
 mod pattern;
 mod reading;
 mod replay;
-#[cfg(feature = "files")]
-mod ros1;
-#[cfg(feature = "files")]
-mod ros2;
-#[cfg(feature = "files")]
-mod rosbag2;
-#[cfg(feature = "files")]
-mod schema;
-#[cfg(feature = "files")]
-mod serial;
 mod sink;
+mod statistics;
 mod survey;
 mod symptom;
 mod text;
-#[cfg(feature = "files")]
-mod topics;
-#[cfg(feature = "files")]
-mod unzstd;
 mod value;
-#[cfg(feature = "files")]
-mod write;
 
 use std::io::Read;
 use std::path::Path;
@@ -98,21 +62,17 @@ pub use diagnose::{
 };
 pub use doctor::{Doctor, Examination, LogVerdict, Suspect};
 #[cfg(feature = "files")]
-pub use files::{read_from, read_log, read_stream};
+pub use files::{
+    Counted, Judging, Marker, McapWriter, Placement, RangeJudge, Shape, Transform, read_from, read_log, read_stream,
+};
 pub use firings::{Firing, FiringLog};
-#[cfg(feature = "files")]
-pub use judging::{Counted, Judging, RangeJudge};
 pub use options::{FieldChoice, Options, RangeUnit, Table, TimeUnit};
 pub use pattern::{FiringPattern, Pattern};
 pub use reading::{Echo, LogReading, Sensor};
 pub use replay::{FlowSettings, Replayed, replay_flow};
-#[cfg(feature = "files")]
-pub use ros2::{Marker, Placement, Shape, Transform};
 pub use sink::{Guess, Report, Skipped};
 pub use survey::{PathSettings, Surveyed, survey, survey_while};
 pub use symptom::{Finding, Symptom};
-#[cfg(feature = "files")]
-pub use write::McapWriter;
 
 /// Reads a text from beginning to end, and calls `each` as [`read_log`] does; `name` is used in errors. It needs no
 /// feature, so that a page in a browser can read pasted text.
@@ -127,7 +87,7 @@ pub fn read_text(
 ) -> Result<Report, FileError> {
     let mut sink = Sink::new(options, &mut each);
     sink.form("text");
-    text::read(input, name, options, &mut sink)?;
+    text::read(input, name, &mut sink)?;
     Ok(sink.finish(name))
 }
 

@@ -148,7 +148,7 @@ fn meaning_of(name: &str) -> Meaning {
 }
 
 fn is_unit(word: &str) -> bool {
-    value::unit(word).is_some() || time_word(word).is_some()
+    value::unit(word).is_some() || TimeUnit::of_word(word).is_some()
 }
 
 /// The unit of ranges in a name, and whether the name says it without doubt: `us` also means ultrasound.
@@ -156,7 +156,7 @@ pub(crate) fn range_unit(name: &str) -> Option<(RangeUnit, bool)> {
     let words = words(name);
     let last = words.last()?;
     let is_echo = words.iter().any(|word| is_in(ECHOES, word));
-    if is_echo && time_word(last) == Some(TimeUnit::Ms) {
+    if is_echo && TimeUnit::of_word(last) == Some(TimeUnit::Ms) {
         return Some((RangeUnit::Ms, true));
     }
     if let Some(unit) = value::unit(last).filter(|_| words.len() > 1 || is_in(UNITS, last)) {
@@ -168,16 +168,6 @@ pub(crate) fn range_unit(name: &str) -> Option<(RangeUnit, bool)> {
         return Some((unit, true));
     }
     is_echo.then_some((RangeUnit::Us, false))
-}
-
-fn time_word(word: &str) -> Option<TimeUnit> {
-    Some(match word {
-        "ms" | "millis" | "msec" | "milliseconds" => TimeUnit::Ms,
-        "us" | "micros" | "usec" | "microseconds" | "µs" => TimeUnit::Us,
-        "ns" | "nanos" | "nsec" | "nsecs" | "nanosec" | "nanoseconds" => TimeUnit::Ns,
-        "s" | "sec" | "secs" | "seconds" => TimeUnit::S,
-        _ => return None,
-    })
 }
 
 /// A name without words for ranges, units, filters and copies, which identifies the sensor.
@@ -247,7 +237,7 @@ pub(crate) fn is_foreign_unit(text: &str) -> bool {
 
 /// The unit of times in a name.
 pub(crate) fn time_unit(name: &str) -> Option<TimeUnit> {
-    words(name).iter().rev().find_map(|word| time_word(word))
+    words(name).iter().rev().find_map(|word| TimeUnit::of_word(word))
 }
 
 /// Preference for a time column: the stamp of a message's header first.

@@ -158,7 +158,7 @@ impl RangeUnit {
 
     /// The unit in metres.
     pub(crate) fn metres(self, speed_of_sound: f64) -> f64 {
-        let (_, size) = self.said();
+        let (_, size, _) = self.said();
         if matches!(self, Self::Ms | Self::Us) { 0.5 * size * speed_of_sound } else { size }
     }
 
@@ -166,16 +166,23 @@ impl RangeUnit {
         self.said().0
     }
 
-    /// The name of the unit, and its size in metres or seconds.
-    const fn said(self) -> (&'static str, f64) {
+    /// The unit with this name in a log.
+    pub(crate) fn of_word(word: &str) -> Option<Self> {
+        let is_own = |(_, unit): &&(_, Self)| unit.said().2.split(' ').any(|own| own == word);
+        Self::NAMES.iter().find(is_own).map(|(_, unit)| *unit)
+    }
+
+    /// The name of the unit, its size in metres or seconds, and its names in logs.
+    const fn said(self) -> (&'static str, f64, &'static str) {
         match self {
-            Self::M => ("metres", 1.0),
-            Self::Cm => ("centimetres", 1e-2),
-            Self::Mm => ("millimetres", 1e-3),
-            Self::In => ("inches", 0.0254),
-            Self::Ft => ("feet", 0.3048),
-            Self::Ms => ("milliseconds", 1e-3),
-            Self::Us => ("microseconds", 1e-6),
+            Self::M => ("metres", 1.0, "m meter meters metre metres"),
+            Self::Cm => ("centimetres", 1e-2, "cm cms centimeter centimeters centimetre centimetres"),
+            Self::Mm => ("millimetres", 1e-3, "mm millimeter millimeters millimetre millimetres"),
+            Self::In => ("inches", 0.0254, "in inch inches \""),
+            Self::Ft => ("feet", 0.3048, "ft foot feet"),
+            // `ms` in a log is a time.
+            Self::Ms => ("milliseconds", 1e-3, "-"),
+            Self::Us => ("microseconds", 1e-6, "us \u{b5}s \u{3bc}s usec microseconds microsecond"),
         }
     }
 }
@@ -184,13 +191,19 @@ impl TimeUnit {
     /// Units by the names that options take.
     pub const NAMES: [(&str, Self); 4] = [("s", Self::S), ("ms", Self::Ms), ("us", Self::Us), ("ns", Self::Ns)];
 
-    /// The name of the unit, and its nanoseconds.
-    pub(crate) const fn said(self) -> (&'static str, f64) {
+    /// The unit with this name in a log.
+    pub(crate) fn of_word(word: &str) -> Option<Self> {
+        let is_own = |(_, unit): &&(_, Self)| unit.said().2.split(' ').any(|own| own == word);
+        Self::NAMES.iter().find(is_own).map(|(_, unit)| *unit)
+    }
+
+    /// The name of the unit, its nanoseconds, and its names in logs.
+    pub(crate) const fn said(self) -> (&'static str, f64, &'static str) {
         match self {
-            Self::S => ("seconds", 1e9),
-            Self::Ms => ("milliseconds", 1e6),
-            Self::Us => ("microseconds", 1e3),
-            Self::Ns => ("nanoseconds", 1.0),
+            Self::S => ("seconds", 1e9, "s sec secs seconds"),
+            Self::Ms => ("milliseconds", 1e6, "ms millis msec milliseconds"),
+            Self::Us => ("microseconds", 1e3, "us micros usec microseconds \u{b5}s"),
+            Self::Ns => ("nanoseconds", 1.0, "ns nanos nsec nsecs nanosec nanoseconds"),
         }
     }
 }

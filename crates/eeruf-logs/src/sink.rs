@@ -51,6 +51,12 @@ pub struct Skipped {
     pub messages: u64,
 }
 
+impl Skipped {
+    pub(crate) fn new(topic: impl Into<String>, why: impl Into<String>) -> Self {
+        Self { topic: topic.into(), why: why.into(), messages: 0 }
+    }
+}
+
 impl Report {
     /// The name of each sensor: its topic, with the frame where several sensors share a topic.
     pub fn names(&self) -> Vec<String> {
@@ -70,7 +76,7 @@ pub(crate) struct Topics {
     pub(crate) found: u64,
     pub(crate) buffer: Vec<LogReading>,
     /// The firings of a ring, if they are asked for.
-    pub(crate) firings: Option<crate::firing_messages::FiringMessages>,
+    pub(crate) firings: Option<crate::files::firing_messages::FiringMessages>,
     /// Topics with readings.
     pub(crate) names: std::collections::HashSet<String>,
     /// Topics about which a warning was given.

@@ -12,8 +12,10 @@
 
 use std::collections::HashMap;
 
-use crate::diagnose::{FoundPath, KeepGoing, groups, ln_at_least, median};
+use crate::diagnose::{FoundPath, KeepGoing};
 use crate::firings::{Firing, FiringLog};
+use crate::paths::{Evidence, Support, paths};
+use crate::statistics::{groups, ln_at_least};
 
 /// Settings of the search for paths in a survey.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -102,19 +104,6 @@ struct Heard {
     is_explained: bool,
 }
 
-/// A candidate for a path.
-struct Place {
-    sender: u8,
-    offsets: (u32, u32),
-    ln_accident: f64,
-    hits: Vec<usize>,
-    trials: u32,
-}
-
-/// The largest number of paths to one receiver.
-const MOST_PATHS: usize = 200;
-/// Number of places of each sender that are examined closely before the best is taken.
-const LOOKED_AT: usize = 4;
 /// Share of the unhidden slots with an offset in which a path must be heard to support that offset.
 const SUPPORTS: f64 = 0.5;
 /// Base of the votes that are slots, above all votes that are offsets.
@@ -152,7 +141,9 @@ pub fn survey_while(log: &FiringLog, settings: &PathSettings, keep_going: KeepGo
             break;
         }
         let mut search = Search::new(receiver as u8, heard, sensors, window_us.into(), settings);
-        let mut paths = search.paths(settings, keep_going);
+        let places = (search.window_us / (2 * search.tolerance) + 1) as f64;
+        let ln_places = (places * (sensors * sensors) as f64).ln();
+        let mut paths = paths(&mut search, ln_places, settings.accidents, keep_going);
         paths.sort_by(|a, b| {
             (a.sender, a.travel_us).partial_cmp(&(b.sender, b.travel_us)).unwrap_or(a.sender.cmp(&b.sender))
         });
@@ -187,61 +178,77 @@ impl Search {
         Self { receiver, heard, sensors, dead_us, window_us, tolerance }
     }
 
-    fn paths(&mut self, settings: &PathSettings, keep_going: KeepGoing<'_>) -> Vec<FoundPath> {
-        let places = (self.window_us / (2 * self.tolerance) + 1) as f64;
-        let ln_places = (places * (self.sensors * self.sensors) as f64).ln();
-        let mut found = Vec::new();
-        while found.len() < MOST_PATHS {
-            let going = (0..self.sensors as u8).take_while(|_| keep_going());
-            let places = going.filter_map(|sender| self.best_of(sender));
-            let Some(best) = places.min_by(|a, b| a.ln_accident.total_cmp(&b.ln_accident)) else { break };
-            let accidents = (best.ln_accident + ln_places).exp();
-            if accidents > settings.accidents {
-                break;
-            }
-            found.push(self.take(&best, accidents));
-        }
-        found
-    }
-
     /// The offset of a sender in a slot: its firing time after the receiver's.
     fn offset(heard: &Heard, sender: u8) -> Option<i64> {
         heard.fired.iter().find(|fired| fired.0 == sender).map(|fired| fired.1)
     }
 
-    fn best_of(&self, sender: u8) -> Option<Place> {
-        let mut travels: Vec<(i64, usize)> = Vec::new();
-        for (place, heard) in self.heard.iter().enumerate().filter(|(_, heard)| !heard.is_explained) {
-            if let (Some(echo_us), Some(offset)) = (heard.echo_us, Self::offset(heard, sender)) {
-                travels.extend((echo_us > offset).then_some((echo_us - offset, place)));
-            }
+    /// The vote of a reading; readings that agree count once for each vote. It is the offset; for an own echo, which
+    /// does not move, and for a sensor that only listens while one other fires, it is the slot.
+    fn vote(&self, heard: &Heard, sender: u8, offset: i64) -> i64 {
+        let listens_to_one = heard.fired.len() == 1;
+        if sender == self.receiver || listens_to_one {
+            BY_SLOT + i64::from(heard.slot) * (4 * self.tolerance)
+        } else {
+            offset
         }
-        travels.sort_unstable();
-        // Where most edges meet.
-        let mut crowds = Vec::with_capacity(travels.len());
-        let mut from = 0;
-        for to in 0..travels.len() {
-            while travels[to].0 - travels[from].0 > 2 * self.tolerance {
-                from += 1;
-            }
-            crowds.push((to + 1 - from, travels[from + (to - from) / 2].0));
-        }
-        crowds.sort_unstable_by_key(|&(edges, travel)| (core::cmp::Reverse(edges), travel));
-        let mut looked_at = Vec::<i64>::new();
-        for (_, travel) in crowds {
-            if looked_at.iter().all(|other| (other - travel).abs() > 2 * self.tolerance) {
-                looked_at.push(travel);
-            }
-            if looked_at.len() >= LOOKED_AT {
-                break;
-            }
-        }
-        let places = looked_at.into_iter().map(|travel_us| self.support(sender, travel_us));
-        places.min_by(|a, b| a.ln_accident.total_cmp(&b.ln_accident))
     }
 
-    /// Evidence for a path and against it.
-    fn support(&self, sender: u8, travel_us: i64) -> Place {
+    /// The probability that a stray edge supports a path at one offset. Possible strays are all unexplained edges of
+    /// the slots in which the sender fired, except the path's own.
+    fn accident(&self, sender: u8, hits: usize) -> f64 {
+        let slots = || self.heard.iter().filter(|heard| Self::offset(heard, sender).is_some());
+        let open = slots().filter(|heard| heard.echo_us.is_some() && !heard.is_explained).count();
+        let strays = (open.saturating_sub(hits) + 1) as f64 / (slots().count() + 1) as f64;
+        let span = (self.window_us - self.dead_us).max(2 * self.tolerance) as f64;
+        // Strays crowd, as echoes do: four times the even density.
+        (4.0 * strays * 2.0 * self.tolerance as f64 / span).min(0.5)
+    }
+
+    /// Number of slots in which a sender could be heard, and the travel times, in milliseconds, at which it could with
+    /// two offsets.
+    fn coverage(&self, sender: u8) -> (u32, u128) {
+        // At each offset, the latest edge: until then nothing hid another's sound.
+        let offsets = self.heard.iter().filter_map(|heard| {
+            let offset = Self::offset(heard, sender)?;
+            Some((offset, self.vote(heard, sender, offset), heard.echo_us.unwrap_or(self.window_us)))
+        });
+        let offsets: Vec<_> = offsets.collect();
+        let mut visible = 0_u128;
+        for ms in 0..128 {
+            let travel_us = 1000 * i64::from(ms) + 500;
+            let is_seen =
+                |&&(offset, _, edge): &&(i64, i64, i64)| (self.dead_us..=edge).contains(&(offset + travel_us));
+            let mut votes: Vec<_> = offsets.iter().filter(is_seen).map(|seen| seen.1).collect();
+            votes.sort_unstable();
+            visible |= u128::from(groups(&votes, 2 * self.tolerance).len() >= 2) << ms;
+        }
+        (offsets.len() as u32, visible)
+    }
+}
+
+impl Evidence for Search {
+    type Source = u8;
+    const MOST_PATHS: usize = 200;
+    const LOOKED_AT: usize = 4;
+
+    fn tolerance(&self) -> i64 {
+        self.tolerance
+    }
+
+    fn sources(&self) -> Vec<u8> {
+        (0..self.sensors as u8).collect()
+    }
+
+    fn travels(&self, sender: u8) -> Vec<(i64, i64)> {
+        let travel = |(place, heard): (usize, &Heard)| {
+            let (echo_us, offset) = (heard.echo_us?, Self::offset(heard, sender)?);
+            (!heard.is_explained && echo_us > offset).then_some((echo_us - offset, place as i64))
+        };
+        self.heard.iter().enumerate().filter_map(travel).collect()
+    }
+
+    fn support(&self, sender: u8, travel_us: i64) -> Support {
         // By offset, or by slot: whether it was heard there.
         let mut trials = Vec::<(i64, bool)>::new();
         let mut hits = Vec::new();
@@ -272,78 +279,17 @@ impl Search {
         // One slot, or one offset, proves nothing.
         let ln_accident =
             if supporting < 2 { 0.0 } else { ln_at_least(supporting, counted.1, self.accident(sender, hits.len())) };
-        Place { sender, offsets: counted, ln_accident, hits, trials: trials.len() as u32 }
+        let heard = hits.len() as f64 / trials.len().max(1) as f64;
+        Support { offsets: counted, ln_accident, readings: hits, heard }
     }
 
-    /// The vote of a reading; readings that agree count once for each vote. It is the offset; for an own echo, which
-    /// does not move, and for a sensor that only listens while one other fires, it is the slot.
-    fn vote(&self, heard: &Heard, sender: u8, offset: i64) -> i64 {
-        let listens_to_one = heard.fired.len() == 1;
-        if sender == self.receiver || listens_to_one {
-            BY_SLOT + i64::from(heard.slot) * (4 * self.tolerance)
-        } else {
-            offset
-        }
+    fn explain(&mut self, sender: u8, _: i64, reading: usize) -> (Option<i64>, u32) {
+        let heard = &mut self.heard[reading];
+        heard.is_explained = true;
+        (Some(heard.echo_us.unwrap_or_default() - Self::offset(heard, sender).unwrap_or_default()), heard.slot)
     }
 
-    /// The probability that a stray edge supports a path at one offset. Possible strays are all unexplained edges of
-    /// the slots in which the sender fired, except the path's own.
-    fn accident(&self, sender: u8, hits: usize) -> f64 {
-        let slots = || self.heard.iter().filter(|heard| Self::offset(heard, sender).is_some());
-        let open = slots().filter(|heard| heard.echo_us.is_some() && !heard.is_explained).count();
-        let strays = (open.saturating_sub(hits) + 1) as f64 / (slots().count() + 1) as f64;
-        let span = (self.window_us - self.dead_us).max(2 * self.tolerance) as f64;
-        // Strays crowd, as echoes do: four times the even density.
-        (4.0 * strays * 2.0 * self.tolerance as f64 / span).min(0.5)
-    }
-
-    fn take(&mut self, place: &Place, accidents: f64) -> FoundPath {
-        let travel = |heard: &Heard| {
-            let offset = Self::offset(heard, place.sender).unwrap_or_default();
-            (heard.echo_us.unwrap_or_default() - offset) as f64
-        };
-        let mut travels: Vec<_> = place.hits.iter().map(|&hit| travel(&self.heard[hit])).collect();
-        let middle = median(&mut travels);
-        let mut off: Vec<_> = travels.iter().map(|travel| (travel - middle).abs()).collect();
-        let scatter_us = (median(&mut off) / 0.6745).max(1.0);
-        let mut slots = (u32::MAX, 0);
-        for &hit in &place.hits {
-            let heard = &mut self.heard[hit];
-            heard.is_explained = true;
-            slots = (slots.0.min(heard.slot), slots.1.max(heard.slot));
-        }
-        FoundPath {
-            sender: place.sender,
-            receiver: self.receiver,
-            travel_us: middle,
-            travel_error_us: scatter_us / (travels.len().max(1) as f64).sqrt(),
-            scatter_us,
-            offsets: place.offsets,
-            accidents,
-            readings: place.hits.len() as u32,
-            heard: place.hits.len() as f64 / f64::from(place.trials.max(1)),
-            periods: slots,
-        }
-    }
-
-    /// Number of slots in which a sender could be heard, and the travel times, in milliseconds, at which it could with
-    /// two offsets.
-    fn coverage(&self, sender: u8) -> (u32, u128) {
-        // At each offset, the latest edge: until then nothing hid another's sound.
-        let offsets = self.heard.iter().filter_map(|heard| {
-            let offset = Self::offset(heard, sender)?;
-            Some((offset, self.vote(heard, sender, offset), heard.echo_us.unwrap_or(self.window_us)))
-        });
-        let offsets: Vec<_> = offsets.collect();
-        let mut visible = 0_u128;
-        for ms in 0..128 {
-            let travel_us = 1000 * i64::from(ms) + 500;
-            let is_seen =
-                |&&(offset, _, edge): &&(i64, i64, i64)| (self.dead_us..=edge).contains(&(offset + travel_us));
-            let mut votes: Vec<_> = offsets.iter().filter(is_seen).map(|seen| seen.1).collect();
-            votes.sort_unstable();
-            visible |= u128::from(groups(&votes, 2 * self.tolerance).len() >= 2) << ms;
-        }
-        (offsets.len() as u32, visible)
+    fn ends(&self, sender: u8) -> (u8, u8) {
+        (sender, self.receiver)
     }
 }

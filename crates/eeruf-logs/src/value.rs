@@ -1,6 +1,6 @@
 //! The text of a cell: a number with a unit, a word for no echo, or a time.
 
-use crate::options::RangeUnit;
+use crate::options::{RangeUnit, TimeUnit};
 
 /// A cell of a column of ranges.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -48,16 +48,7 @@ pub(crate) fn with_unit(text: &str, decimal_comma: bool) -> Option<(f64, Option<
 
 /// The unit of ranges with this name.
 pub(crate) fn unit(word: &str) -> Option<RangeUnit> {
-    let word = word.trim_matches(['(', ')', '[', ']', '.']).to_lowercase();
-    Some(match word.as_str() {
-        "m" | "meter" | "meters" | "metre" | "metres" => RangeUnit::M,
-        "cm" | "cms" | "centimeter" | "centimeters" | "centimetre" | "centimetres" => RangeUnit::Cm,
-        "mm" | "millimeter" | "millimeters" | "millimetre" | "millimetres" => RangeUnit::Mm,
-        "in" | "inch" | "inches" | "\"" => RangeUnit::In,
-        "ft" | "foot" | "feet" => RangeUnit::Ft,
-        "us" | "µs" | "μs" | "usec" | "microseconds" | "microsecond" => RangeUnit::Us,
-        _ => return None,
-    })
+    RangeUnit::of_word(&word.trim_matches(['(', ')', '[', ']', '.']).to_lowercase())
 }
 
 /// The range in a cell; `None` if it is neither a number nor a word for no echo.
@@ -230,14 +221,8 @@ pub(crate) fn without_level(line: &str) -> &str {
 /// Nanoseconds of a time with its unit: `1.5 s`, `1500ms`.
 pub(crate) fn elapsed_ns(text: &str) -> Option<u64> {
     let (time, unit) = text.split_at(text.find(char::is_alphabetic)?);
-    let unit_s = match unit {
-        "s" | "sec" => 1.0,
-        "ms" => 1e-3,
-        "us" | "\u{b5}s" => 1e-6,
-        _ => return None,
-    };
-    let time_s = unit_s * number(time.trim_end(), false)?;
-    (0.0..1e10).contains(&time_s).then(|| (time_s * 1e9).round() as u64)
+    let ns = TimeUnit::of_word(unit)?.said().1 * number(time.trim_end(), false)?;
+    (0.0..1e19).contains(&ns).then(|| ns.round() as u64)
 }
 
 /// Nanoseconds of a time in brackets: a date, seconds, seconds and those since the last line, or a time with a unit.

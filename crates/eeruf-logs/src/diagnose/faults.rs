@@ -4,9 +4,9 @@
 //! sound, and sound takes equally long both ways, so it should hear theirs along the same paths.
 
 use super::sensors::Hearing;
-use super::statistics::ln_at_least;
 use super::timeline::Timeline;
 use super::{FoundPath, Settings};
+use crate::statistics::ln_at_least;
 use crate::symptom::{Finding, Symptom};
 
 /// Least ratio of the share of arrivals heard on the way back to that on the way there.

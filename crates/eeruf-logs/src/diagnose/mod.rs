@@ -21,7 +21,6 @@ mod naming;
 mod search;
 mod sensors;
 mod share;
-mod statistics;
 mod timeline;
 mod timing;
 
@@ -34,7 +33,6 @@ use search::paths_to;
 pub use sensors::Hearing;
 use sensors::hearing;
 pub use share::Share;
-pub(crate) use statistics::{groups, ln_at_least, median};
 use timeline::Timeline;
 pub use timing::{Timing, TimingError, timing};
 

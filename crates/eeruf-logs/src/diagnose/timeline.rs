@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use super::Settings;
 use super::share::Share;
-use super::statistics::groups;
 use crate::firings::FiringLog;
+use crate::statistics::groups;
 
 /// One reading of the receiver.
 #[derive(Clone, Copy)]

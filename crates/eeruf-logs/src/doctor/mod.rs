@@ -66,6 +66,12 @@ pub struct Examination {
     pub notes: Vec<String>,
 }
 
+impl Examination {
+    fn cannot_tell(reason: impl Into<String>, record: impl Into<String>) -> Self {
+        Self { reasons: vec![reason.into()], record: Some(record.into()), ..Self::default() }
+    }
+}
+
 /// A suspicion that a log alone does not decide.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Suspect {
@@ -101,12 +107,24 @@ pub struct Doctor {
     /// The time of each reading, in microseconds.
     row_at_us: Vec<f64>,
     left_out: usize,
+    names: Vec<String>,
+    /// The scatter of each sensor's readings.
+    scatter: Vec<Scatter>,
 }
 
 impl Doctor {
     /// A doctor without readings; the speed of sound in m/s converts ranges to echo times.
     pub fn new(speed_of_sound: f64) -> Self {
-        Self { speed_of_sound, first_ns: None, sensors: vec![], rows: vec![], row_at_us: vec![], left_out: 0 }
+        Self {
+            speed_of_sound,
+            first_ns: None,
+            sensors: vec![],
+            rows: vec![],
+            row_at_us: vec![],
+            left_out: 0,
+            names: vec![],
+            scatter: vec![],
+        }
     }
 
     /// Adds a reading. The first 262,144 are kept.
@@ -135,48 +153,32 @@ impl Doctor {
 
     /// Examines the readings; `names` are the sensors' names.
     pub fn examine(mut self, firing: &FiringPattern, names: &[String]) -> Examination {
-        for series in &mut self.sensors {
-            series.sort();
-        }
-        let name = |sensor: usize| names.get(sensor).map_or("?", String::as_str);
+        self.sensors.iter_mut().for_each(Series::sort);
+        self.scatter = self.sensors.iter().map(Series::scatter).collect();
+        self.names = names.to_vec();
         let mut found = match firing.pattern {
-            Pattern::Alternating => self.alternating(&name),
-            Pattern::ConstantLags => self.constant(firing, &name),
-            Pattern::AtOnce => Examination {
-                reasons: vec![
-                    "the sensors fire at the same instant: sound from one to another repeats as exactly as the own \
-                     echo, and a wall before two sensors gives both the same echo without any crosstalk"
-                        .to_owned(),
-                ],
-                record: Some(CHANGE.to_owned()),
-                ..Examination::default()
-            },
+            Pattern::Alternating => self.alternating(),
+            Pattern::ConstantLags => self.constant(firing),
             Pattern::InTurn => self.in_turn(firing),
-            Pattern::Several | Pattern::Flow => Examination {
-                reasons: vec![
-                    "lags move between many values, which takes the log of the firings to examine".to_owned(),
-                ],
-                record: Some(
-                    "firings with sensor, fired_us, period, phase and t_echo_us; `eeruf diagnose` names who \
-                              fools whom"
-                        .to_owned(),
-                ),
-                ..Examination::default()
-            },
-            Pattern::Unknown => Examination {
-                reasons: vec![format!("the log does not say when each sensor fired: {}", firing.why)],
-                record: Some(
-                    "5 minutes with the time of firing of each reading, to the millisecond or better".to_owned(),
-                ),
-                ..Examination::default()
-            },
+            Pattern::AtOnce => Examination::cannot_tell(
+                "the sensors fire at the same instant: sound from one to another repeats as exactly as the own echo, \
+                 and a wall before two sensors gives both the same echo without any crosstalk",
+                CHANGE,
+            ),
+            Pattern::Several | Pattern::Flow => Examination::cannot_tell(
+                "lags move between many values, which takes the log of the firings to examine",
+                "firings with sensor, fired_us, period, phase and t_echo_us; `eeruf diagnose` names who fools whom",
+            ),
+            Pattern::Unknown => Examination::cannot_tell(
+                format!("the log does not say when each sensor fired: {}", firing.why),
+                "5 minutes with the time of firing of each reading, to the millisecond or better",
+            ),
         };
-        let scatter: Vec<Scatter> = self.sensors.iter().map(Series::scatter).collect();
-        let cleared = self.silent_rounds(&scatter, &name, &mut found);
-        self.senders(&scatter, &name, &mut found);
+        let cleared = self.silent_rounds(&mut found);
+        self.senders(&mut found);
         found.fooled.sort_unstable();
         found.fooled.dedup();
-        self.suspects(&scatter, &cleared, &name, &mut found);
+        self.suspects(&cleared, &mut found);
         if found.verdict == LogVerdict::NoneSeen
             && let Some(suspect) = found.suspects.first()
         {
@@ -186,13 +188,14 @@ impl Doctor {
                 suspect.reason
             )];
         }
-        let more =
-            found.suspects.iter().map(|of| &of.reason).filter(|of| !found.reasons.iter().any(|r| r.contains(*of)));
-        let more: Vec<_> = more.cloned().collect();
-        found.reasons.extend(more);
+        for of in &found.suspects {
+            if !found.reasons.iter().any(|reason| reason.contains(&of.reason)) {
+                found.reasons.push(of.reason.clone());
+            }
+        }
         for (sensor, own) in self.sensors.iter().enumerate().filter(|(sensor, _)| !found.fooled.contains(sensor)) {
             if let Some((symptom, said)) = own.symptom() {
-                found.notes.push(format!("{}: {said}", name(sensor)));
+                found.notes.push(format!("{}: {said}", self.name(sensor)));
                 found.findings.push(Finding { sensor, symptom, said });
             }
         }
@@ -202,14 +205,13 @@ impl Doctor {
         found
     }
 
+    fn name(&self, sensor: usize) -> &str {
+        self.names.get(sensor).map_or("?", String::as_str)
+    }
+
     /// Uses rounds in which another sensor did not fire as a pause test, and returns the sensors that pass it with all
     /// others.
-    fn silent_rounds<'n>(
-        &self,
-        scatter: &[Scatter],
-        name: &impl Fn(usize) -> &'n str,
-        found: &mut Examination,
-    ) -> Vec<bool> {
+    fn silent_rounds(&self, found: &mut Examination) -> Vec<bool> {
         /// Number of comparisons in which a share of `LEAST_SHARE` would show.
         const MANY: u32 = 400;
         let sensors = self.sensors.len();
@@ -243,7 +245,7 @@ impl Doctor {
                     cleared[receiver] = false;
                     continue;
                 }
-                let seen = self.sensors[receiver].changes(classes, scatter[receiver]).dependence();
+                let seen = self.sensors[receiver].changes(classes, self.scatter[receiver]).dependence();
                 let is_fooled = seen.is_foreign();
                 cleared[receiver] &= seen.count >= MANY && !is_fooled;
                 if is_fooled {
@@ -254,11 +256,11 @@ impl Doctor {
                         by: Some(other),
                         reason: format!(
                             "{}: {:.0} % of the readings are others in rounds in which {} did not fire",
-                            name(receiver),
+                            self.name(receiver),
                             100.0 * seen.share,
-                            name(other)
+                            self.name(other)
                         ),
-                        test: pause(name(receiver), name(other)),
+                        test: pause(self.name(receiver), self.name(other)),
                     });
                 }
             }
@@ -267,11 +269,11 @@ impl Doctor {
     }
 
     /// Finds readings that move against the lag to another sensor by as much, as only its sound does.
-    fn senders<'n>(&self, scatter: &[Scatter], name: &impl Fn(usize) -> &'n str, found: &mut Examination) {
+    fn senders(&self, found: &mut Examination) {
         /// Significance limit in standard deviations, for twice as many comparisons as there are pairs of sensors.
         const DEVIATIONS: f64 = 5.0;
         // The least: lags that change at random scatter a fooled sensor's readings.
-        let same_us = scatter.iter().map(|of| of.same_us(*of)).fold(f64::INFINITY, f64::min);
+        let same_us = self.scatter.iter().map(|of| of.same_us(*of)).fold(f64::INFINITY, f64::min);
         for (receiver, own) in self.sensors.iter().enumerate().take_while(|_| self.sensors.len() <= MOST_SENSORS) {
             let others = self.sensors.iter().enumerate().filter(|&(other, _)| other != receiver);
             let follows = others.map(|(other, of)| (other, own.follows(of, same_us)));
@@ -281,7 +283,7 @@ impl Doctor {
             let alike: Vec<usize> =
                 seen.iter().filter(|(_, of)| of.share > 0.9 * most).map(|&(other, _)| other).collect();
             let Some(&by) = alike.first() else { continue };
-            let senders = alike.iter().map(|&other| name(other)).collect::<Vec<_>>().join(" or ");
+            let senders = alike.iter().map(|&other| self.name(other)).collect::<Vec<_>>().join(" or ");
             // Drop the reasons that the sender's pattern has answered.
             let is_known = found.verdict == LogVerdict::Crosstalk;
             found.reasons.retain(|_| is_known);
@@ -294,30 +296,24 @@ impl Doctor {
                 reason: format!(
                     "{}: {:.0} % of the readings move by as much as the lag to {senders}, and against it: the sound of \
                      {senders}; an own echo does not",
-                    name(receiver),
+                    self.name(receiver),
                     100.0 * most
                 ),
-                test: pause(name(receiver), name(by)),
+                test: pause(self.name(receiver), self.name(by)),
             });
         }
     }
 
     /// Finds readings explained by a loop or by others' sound but not by objects at rest or in motion.
-    fn suspects<'n>(
-        &self,
-        scatter: &[Scatter],
-        cleared: &[bool],
-        name: &impl Fn(usize) -> &'n str,
-        found: &mut Examination,
-    ) {
+    fn suspects(&self, cleared: &[bool], found: &mut Examination) {
         /// Share of unexplained readings for a suspect: isolated ones, jumps, and those off a steady value while the
         /// robot stands.
         const ISOLATED: f64 = 0.02;
         const JUMPS: f64 = 0.02;
         const STANDS: f64 = 0.5;
-        let loops = if self.has_rounds() { looped(&self.rows, scatter) } else { vec![] };
+        let loops = if self.has_rounds() { looped(&self.rows, &self.scatter) } else { vec![] };
         for of in loops {
-            let (own, other) = (name(of.receiver), name(of.sender));
+            let (own, other) = (self.name(of.receiver), self.name(of.sender));
             let what = if of.is_difference { "difference" } else { "sum" };
             found.suspects.push(Suspect {
                 sensor: of.receiver,
@@ -341,7 +337,7 @@ impl Doctor {
                 continue;
             }
             let share = 100.0 * if is_loose { of.loose } else { of.isolated.max(of.jumps) };
-            let own = name(sensor);
+            let own = self.name(sensor);
             if cleared.get(sensor) == Some(&true) {
                 found.reasons.push(format!(
                     "{own}: {share:.0} % of the readings come from nothing that stands or moves, and no fewer in \
@@ -371,7 +367,7 @@ impl Doctor {
     }
 
     /// Examines readings with two phases, in which an own echo is the same in both.
-    fn alternating<'n>(&self, name: &impl Fn(usize) -> &'n str) -> Examination {
+    fn alternating(&self) -> Examination {
         let mut found = Examination::default();
         let (mut few, mut unclear, mut blurred) = (0, 0, 0.0_f64);
         for (sensor, own) in self.sensors.iter().enumerate() {
@@ -384,7 +380,7 @@ impl Doctor {
                 few += 1;
                 continue;
             };
-            let scatter = own.scatter();
+            let scatter = self.scatter[sensor];
             // Foreign sound moves by the step of the lags, which must show.
             if scatter.same_us(scatter) > step_us {
                 blurred = blurred.max(scatter.us);
@@ -396,7 +392,7 @@ impl Doctor {
                 found.fooled.push(sensor);
                 found.reasons.push(format!(
                     "{}: {:.0} % of the readings depend on which of two lags others fire with; an own echo does not",
-                    name(sensor),
+                    self.name(sensor),
                     100.0 * seen.share
                 ));
             } else if seen.share >= LEAST_SHARE + 1.0 / f64::from(seen.count).sqrt() {
@@ -431,10 +427,9 @@ impl Doctor {
 
     /// Examines readings with constant lags: crosstalk repeats, and shows only if two sensors read each other's sound
     /// while they move.
-    fn constant<'n>(&self, firing: &FiringPattern, name: &impl Fn(usize) -> &'n str) -> Examination {
+    fn constant(&self, firing: &FiringPattern) -> Examination {
         let mut found = Examination::default();
         let period_us = firing.period_us.unwrap_or(0) as f64;
-        let moving = self.sensors.iter().filter(|own| own.moves()).count();
         for x in 0..self.sensors.len() {
             for y in x + 1..self.sensors.len() {
                 let seen = mirrored(&self.sensors[x], &self.sensors[y], period_us);
@@ -444,8 +439,8 @@ impl Doctor {
                     found.reasons.push(format!(
                         "{} and {}: {} of {} readings differ by twice the lag between their firings while they change \
                          by {:.1} ms, as sound on one path in both directions does, and {} nearly do",
-                        name(x),
-                        name(y),
+                        self.name(x),
+                        self.name(y),
                         seen.agree,
                         seen.both,
                         seen.spread_us * 1e-3,
@@ -454,23 +449,16 @@ impl Doctor {
                 }
             }
         }
-        found.fooled.sort_unstable();
-        found.fooled.dedup();
-        if found.pairs.is_empty() {
-            found.reasons.push(if moving == 0 {
-                "the sensors fire with lags that stay the same, and nothing moves: another's sound repeats as exactly \
-                 as the own echo"
-                    .to_owned()
-            } else {
-                "the sensors fire with lags that stay the same, and no two of them read the same sound; what one \
-                 reads of another alone does not show"
-                    .to_owned()
-            });
-            found.record = Some(CHANGE.to_owned());
-        } else {
+        if !found.pairs.is_empty() {
             found.verdict = LogVerdict::Crosstalk;
+            return found;
         }
-        found
+        let why = if self.sensors.iter().any(Series::moves) {
+            "no two of them read the same sound; what one reads of another alone does not show"
+        } else {
+            "nothing moves: another's sound repeats as exactly as the own echo"
+        };
+        Examination::cannot_tell(format!("the sensors fire with lags that stay the same, and {why}"), CHANGE)
     }
 
     /// Examines readings in turn, where no sound of another sensor is left when a sensor listens.
@@ -482,23 +470,15 @@ impl Doctor {
         let gap_us = firing.gap_us.unwrap_or(0);
         let gap_ms = gap_us as f64 * 1e-3;
         if gap_us < QUIET_US {
-            return Examination {
-                reasons: vec![format!(
-                    "the sensors fire {gap_ms:.1} ms apart, and sound in a room lasts up to {} ms",
-                    QUIET_US / 1000
-                )],
-                record: Some(format!("1 minute with {} ms from one sensor to the next", QUIET_US / 1000)),
-                ..Examination::default()
-            };
+            let quiet_ms = QUIET_US / 1000;
+            return Examination::cannot_tell(
+                format!("the sensors fire {gap_ms:.1} ms apart, and sound in a room lasts up to {quiet_ms} ms"),
+                format!("1 minute with {quiet_ms} ms from one sensor to the next"),
+            );
         }
-        let cannot_tell = |why: String, record: &str| Examination {
-            reasons: vec![why],
-            record: Some(record.to_owned()),
-            ..Examination::default()
-        };
         let rounds = self.sensors.iter().map(|own| own.echo_us.len()).min().unwrap_or(0);
         if rounds < ROUNDS {
-            return cannot_tell(
+            return Examination::cannot_tell(
                 format!("{rounds} rounds, of which seldom crosstalk may have missed all; expected {ROUNDS}"),
                 "5 minutes of the same",
             );
@@ -508,7 +488,7 @@ impl Doctor {
         let jumps = odd.iter().map(|of| of.jumps * of.echoes as f64).sum::<f64>() / echoes.max(1) as f64;
         let moves = odd.iter().filter(|of| of.echoes > 0).all(|of| of.stands < 0.5);
         if moves && jumps > JUMPS {
-            return cannot_tell(
+            return Examination::cannot_tell(
                 format!(
                     "the robot moves, and {:.1} % of the readings jump: corners do that, and modules that fire by \
                      themselves, if the times are those of reading them",

@@ -1,7 +1,7 @@
 //! The readings of one sensor, in order of time.
 
 use super::statistics::{Changes, Dependence};
-use crate::diagnose::median;
+use crate::statistics::median;
 
 /// Difference to the next echo, in microseconds, up to which echoes belong to one steady value.
 const NEXT_US: f64 = 100.0;

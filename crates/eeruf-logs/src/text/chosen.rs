@@ -147,11 +147,7 @@ impl Plan {
                 let foreign = self.known.iter().filter(|name| is_of(name, Meaning::Other));
                 self.foreign = foreign.cloned().collect();
                 self.known.retain(|name| !self.foreign.contains(name));
-                self.skipped.extend(self.foreign.iter().map(|name| Skipped {
-                    topic: name.clone(),
-                    why: "no range, by its name".to_owned(),
-                    messages: 0,
-                }));
+                self.skipped.extend(self.foreign.iter().map(|name| Skipped::new(name, "no range, by its name")));
             }
         }
         let names: Vec<_> = match chosen {

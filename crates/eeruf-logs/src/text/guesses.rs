@@ -91,9 +91,8 @@ impl Plan {
             let taken: Vec<_> = ranges().copied().collect();
             for index in taken {
                 self.columns[index].role = Role::Other;
-                let (topic, why) =
-                    (self.columns[index].name.clone(), "nearer or farther than modules hear, in any unit".to_owned());
-                self.skipped.push(Skipped { topic, why, messages: 0 });
+                let why = "nearer or farther than modules hear, in any unit";
+                self.skipped.push(Skipped::new(&self.columns[index].name, why));
             }
         }
     }

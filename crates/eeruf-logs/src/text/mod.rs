@@ -23,7 +23,7 @@ mod validity;
 use std::io::Read;
 use std::path::Path;
 
-use crate::options::{Options, Parts};
+use crate::options::Parts;
 use crate::sink::{Sink, Skipped};
 use eeruf_files::FileError;
 
@@ -39,7 +39,8 @@ pub(crate) use {
 const SAMPLE: (usize, usize) = (1000, 1 << 18);
 
 /// Reads a text; `file` is used in errors.
-pub(crate) fn read(input: impl Read, file: &Path, options: &Options, sink: &mut Sink<'_>) -> Result<(), FileError> {
+pub(crate) fn read(input: impl Read, file: &Path, sink: &mut Sink<'_>) -> Result<(), FileError> {
+    let options = sink.options;
     let failed = |error: std::io::Error| FileError::reading(file, &error);
     let mut source = Source::new(Box::new(input)).map_err(failed)?;
     let (mut sample, mut bytes) = (vec![], 0);
@@ -50,8 +51,7 @@ pub(crate) fn read(input: impl Read, file: &Path, options: &Options, sink: &mut 
     }
     if let Some(form) = source.of_records().filter(|_| sample.is_empty()) {
         form.clone_into(&mut sink.report.form);
-        let (topic, why) = (form.to_owned(), "no records with ranges".to_owned());
-        sink.report.skipped.push(Skipped { topic, why, messages: 0 });
+        sink.report.skipped.push(Skipped::new(form, "no records with ranges"));
         return Ok(());
     }
     if sample.iter().all(|line| line.text.trim().is_empty()) && sample.len() < SAMPLE.0 {

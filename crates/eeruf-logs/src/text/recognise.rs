@@ -186,7 +186,7 @@ impl Plan {
         let ignored = lines.iter().filter(|line| line.0 + 1 < self.rows_from).count();
         if ignored > 0 {
             let why = format!("{ignored} of its lines, without any reading");
-            self.skipped.push(Skipped { topic: "the beginning".to_owned(), why, messages: 0 });
+            self.skipped.push(Skipped::new("the beginning", why));
         }
         let is_echoed = names.is_none() && is_echoed_range(&rows[first..], width);
         if is_echoed {
@@ -464,12 +464,8 @@ impl Plan {
         self.sensor_column(file, sensor, &ranges, lines)?;
         self.validities();
         let other = |column: &&Column| column.role == Role::Other && column.is_numeric && ranges.is_empty();
-        let skipped = self.columns.iter().filter(other).map(|column| Skipped {
-            topic: column.name.clone(),
-            why: "a column that is no range, by its name or its values; --range reads it".to_owned(),
-            messages: 0,
-        });
-        self.skipped.extend(skipped);
+        let why = "a column that is no range, by its name or its values; --range reads it";
+        self.skipped.extend(self.columns.iter().filter(other).map(|column| Skipped::new(&column.name, why)));
         Ok(())
     }
 

@@ -328,7 +328,7 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
             self.sensors[index] = Some(self.add(&name));
             let why =
                 format!("a sensor whose first value is in line {}; the empty cells before do not count", line.number);
-            self.sink.report.skipped.push(Skipped { topic: name, why, messages: 0 });
+            self.sink.report.skipped.push(Skipped::new(name, why));
         }
         let at_ns = at_ns.map(|ns| self.after_midnight(ns)).map(|ns| self.after_wrap(ns));
         let sensor_of_row = label.map(|label| self.labelled(label)).transpose()?;
@@ -427,21 +427,20 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
         let skipped = &mut self.sink.report.skipped;
         if left_out > 0 {
             let why = format!("{left_out} of its lines: a board, a monitor or a logger wrote them by itself");
-            skipped.push(Skipped { topic: "the text".to_owned(), why, messages: 0 });
+            skipped.push(Skipped::new("the text", why));
         }
         if self.of_light > 0 {
             let column = self.plan.medium.map_or("", |(index, _)| &self.plan.columns[index].name);
-            let (topic, why) = (column.to_owned(), "no ultrasound, by this column; --range reads them".to_owned());
-            skipped.push(Skipped { topic, why, messages: self.of_light });
+            let why = "no ultrasound, by this column; --range reads them";
+            skipped.push(Skipped { messages: self.of_light, ..Skipped::new(column, why) });
         }
         if self.others > self.of_light {
             let why = format!("{} lines without readings", self.others - self.of_light);
-            skipped.push(Skipped { topic: "the text".to_owned(), why, messages: 0 });
+            skipped.push(Skipped::new("the text", why));
         }
         if !self.unknown.is_empty() {
             let names = self.unknown.into_iter().collect::<Vec<_>>().join(", ");
-            let why = "names that the first lines do not have".to_owned();
-            skipped.push(Skipped { topic: names, why, messages: 0 });
+            skipped.push(Skipped::new(names, "names that the first lines do not have"));
         }
         if self.sink.report.sensors.is_empty() {
             let names: Vec<_> = self.plan.columns.iter().map(|column| short(&column.name)).collect();
@@ -449,7 +448,7 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
                 [] => "no line that holds a number".to_owned(),
                 names => format!("columns {}, none of them a range", names.join(", ")),
             };
-            skipped.push(Skipped { topic: self.plan.form, why, messages: 0 });
+            skipped.push(Skipped::new(self.plan.form, why));
         }
     }
 }

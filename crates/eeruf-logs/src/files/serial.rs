@@ -6,7 +6,7 @@ use std::path::Path;
 use eeruf_serial::{Decoder, FiringMessage, FrameError, Message};
 
 use crate::firings::{Firing, FiringLog};
-use crate::options::{Options, Parts, RangeUnit};
+use crate::options::{Parts, RangeUnit};
 use crate::reading::{LogReading, Sensor};
 use crate::sink::Sink;
 use eeruf_files::FileError;
@@ -85,8 +85,9 @@ fn frames(mut input: impl Read, mut each: impl FnMut(FiringMessage, i64)) -> io:
 }
 
 /// Reads ranges; `file` is used in errors.
-pub(crate) fn read(input: impl Read, file: &Path, options: &Options, sink: &mut Sink<'_>) -> Result<(), FileError> {
+pub(crate) fn read(input: impl Read, file: &Path, sink: &mut Sink<'_>) -> Result<(), FileError> {
     sink.has(Parts::Frames);
+    let options = sink.options;
     let metres = RangeUnit::Us.metres(options.speed_of_sound);
     let mut sensors = [None; 256];
     let line = frames(input, |firing, at_us| {

@@ -2,12 +2,14 @@
 //! tool must convert.
 
 use std::fs::File;
-use std::io::{self, Read, Write as _};
+use std::io::{self, BufReader, Read, Write as _};
 use std::path::Path;
 
 use eeruf_files::FileError;
 
-use crate::flight::Flight;
+use super::bag::Form as _;
+use super::flight::Flight;
+use crate::sink::Sink;
 
 const SQLITE_MAGIC: &[u8; 16] = b"SQLite format 3\0";
 
@@ -51,13 +53,13 @@ impl Form {
         let ending = file.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
         let starts = |magic: &[u8]| first.starts_with(magic);
         let is_frame = |at: usize| matches!(first.get(at), Some(0xfe | 0xfd));
-        if starts(&crate::mcap::MAGIC) {
+        if starts(super::mcap::Mcap::MAGIC) {
             Self::Mcap
-        } else if starts(crate::ros1::MAGIC) {
+        } else if starts(super::ros1::Ros1::MAGIC) {
             Self::Ros1
         } else if starts(SQLITE_MAGIC) {
             Self::Sqlite
-        } else if crate::serial::is_serial(first) {
+        } else if super::serial::is_serial(first) {
             Self::Serial
         } else if starts(&[0x1f, 0x8b]) {
             Self::Packed(Packing::Gzip)
@@ -147,43 +149,60 @@ impl Packing {
     }
 }
 
-/// A reader that yields the bytes unpacked before an error, and keeps the error.
-pub(crate) struct UntilError<'a, R> {
-    input: R,
-    error: &'a mut Option<io::Error>,
+/// A log that is read in order, unpacked if it is packed as a whole.
+pub(crate) struct Opened<'a> {
+    pub(crate) form: Form,
+    pub(crate) packing: Option<Packing>,
+    input: Box<dyn Read + 'a>,
+    /// The error that ended unpacking; the bytes before it can be read.
+    pub(crate) error: Option<io::Error>,
 }
 
-impl<'a, R: Read> UntilError<'a, R> {
-    pub(crate) fn new(input: R, error: &'a mut Option<io::Error>) -> Self {
-        Self { input, error }
+impl<'a> Opened<'a> {
+    /// Recognises the form of a log by its first bytes, or by the ending of its name.
+    pub(crate) fn new(mut input: impl Read + 'a, name: &Path) -> io::Result<Self> {
+        let first = first_bytes(&mut input)?;
+        let form = Form::of(&first, name);
+        let input = io::Cursor::new(first).chain(input);
+        let Form::Packed(packing) = form else {
+            return Ok(Self { form, packing: None, input: Box::new(input), error: None });
+        };
+        let input = packing.unpack(BufReader::new(input))?;
+        let mut unpacked = Self { form, packing: Some(packing), input, error: None };
+        let first = first_bytes(&mut unpacked)?;
+        unpacked.form = Form::of(&first, name.file_stem().map_or(name, Path::new));
+        unpacked.input = Box::new(io::Cursor::new(first).chain(unpacked.input));
+        Ok(unpacked)
+    }
+
+    /// Copies a bag into a file that is deleted when dropped.
+    pub(crate) fn to_file(&mut self) -> io::Result<tempfile::NamedTempFile> {
+        /// The largest bag that is copied.
+        const LARGEST: u64 = 1 << 36;
+        let mut file = tempfile::Builder::new().prefix("eeruf-").suffix(".bag").tempfile()?;
+        io::copy(&mut self.take(LARGEST), &mut file)?;
+        file.flush()?;
+        Ok(file)
+    }
+
+    /// Notes an error that ended unpacking.
+    pub(crate) fn tell(self, file: &Path, sink: &mut Sink<'_>) {
+        if let Some(error) = self.error {
+            sink.damage(file, None, format!("it cannot be unpacked to its end: {error}; what comes before was read"));
+        }
     }
 }
 
-impl<R: Read> Read for UntilError<'_, R> {
+impl Read for Opened<'_> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
-        if self.error.is_some() {
-            return Ok(0);
-        }
         match self.input.read(into) {
-            Err(error) if error.kind() != io::ErrorKind::Interrupted => {
-                *self.error = Some(error);
+            Err(error) if self.packing.is_some() && error.kind() != io::ErrorKind::Interrupted => {
+                self.error = Some(error);
                 Ok(0)
             }
             other => other,
         }
     }
-}
-
-/// The largest bag that is unpacked into a temporary file.
-const LARGEST_BAG: u64 = 1 << 36;
-
-/// Unpacks a bag into a file that is deleted when dropped; returns the damage.
-pub(crate) fn to_file(input: impl Read, ending: &str) -> io::Result<(tempfile::NamedTempFile, Option<io::Error>)> {
-    let mut file = tempfile::Builder::new().prefix("eeruf-").suffix(&format!(".{ending}")).tempfile()?;
-    let mut error = None;
-    io::copy(&mut UntilError::new(input, &mut error).take(LARGEST_BAG), &mut file)?;
-    file.flush()?;
-    Ok((file, error))
 }
 
 impl Foreign {

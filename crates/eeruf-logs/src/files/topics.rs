@@ -3,11 +3,11 @@
 use std::path::Path;
 use std::rc::Rc;
 
-use crate::message::{Kind, MAX_BEAMS, Of, Undecoded};
+use super::message::{Kind, MAX_BEAMS, Of, Undecoded};
+use super::ros2::FIRING;
+use super::schema::Encoding;
 use crate::options::RangeUnit;
 use crate::reading::Sensor;
-use crate::ros2::FIRING;
-use crate::schema::Encoding;
 use crate::sink::{Guess, Sink, Skipped, finite};
 
 /// One topic of one file.
@@ -46,7 +46,7 @@ impl Sink<'_> {
     ) -> Topic {
         let kind = Kind::of(name, type_name, schema, self.options);
         let mut skip = |why: String| {
-            let skipped = Skipped { topic: name.to_owned(), why, messages: 0 };
+            let skipped = Skipped::new(name, why);
             if !self.report.skipped.contains(&skipped) {
                 self.report.skipped.push(skipped);
             }
@@ -219,7 +219,7 @@ impl Sink<'_> {
             ),
         ];
         for (messages, why) in lost.into_iter().filter(|(messages, _)| *messages > 0) {
-            self.report.skipped.push(Skipped { topic: topic.name.clone(), why, messages });
+            self.report.skipped.push(Skipped { messages, ..Skipped::new(&topic.name, why) });
         }
     }
 

@@ -1,16 +1,17 @@
 //! Firing logs in MCAP: messages `eeruf_msgs/msg/Firing` of ROS 2.
 
 use std::collections::BTreeSet;
-use std::io::{self, Read};
 use std::path::Path;
 
-use crate::firing_text::{MAX_SENSORS, kind_of};
+use super::bag;
+use super::firing_text::{MAX_SENSORS, kind_of};
+use super::form::Opened;
+use super::mcap::Mcap;
+use super::ros2::{FIRING, definition};
+use super::schema::{Decoder, Encoding, Schema};
 use crate::firings::{Firing, FiringLog};
 use crate::options::Options;
-use crate::ros2::{FIRING, definition};
-use crate::schema::{Decoder, Encoding, Schema};
 use crate::sink::Sink;
-use crate::{form, mcap};
 use eeruf_files::FileError;
 
 /// The fields of the message, in the order in which they are decoded.
@@ -27,15 +28,14 @@ pub(crate) struct FiringMessages {
 }
 
 /// Reads the firings of a file, up to damage; `file` is used in errors.
-pub(crate) fn read(input: impl Read, file: &Path) -> Result<FiringLog, FileError> {
-    let failed = |error: io::Error| FileError::reading(file, &error);
-    let (copy, _) = form::to_file(input, "mcap").map_err(failed)?;
+pub(crate) fn read(input: &mut Opened<'_>, file: &Path) -> Result<FiringLog, FileError> {
+    let copy = input.to_file().map_err(|error| FileError::reading(file, &error))?;
     let (options, mut each) = (Options::default(), |_: &_, _: &_| {});
     let mut sink = Sink::new(&options, &mut each);
     let decoder = Schema::parse(&definition(FIRING)).and_then(|schema| schema.decoder(&FIELDS));
     let (topics, firings) = (BTreeSet::new(), vec![]);
     sink.of_topics.firings = Some(FiringMessages { decoder, topics, clock: String::new(), firings, has_other: false });
-    mcap::read(&mut copy.as_file(), file, false, &mut sink)?;
+    bag::read(Mcap::new(false), &mut copy.as_file(), file, &mut sink)?;
     let damage = sink.report.damage.first().map(|damage| damage.message().to_owned());
     match sink.of_topics.firings.take() {
         Some(found) => found.log(damage, file),

@@ -8,10 +8,10 @@ use std::path::{Path, PathBuf};
 use ::mcap::records::MessageHeader;
 use ::mcap::{WriteOptions, Writer};
 
-use crate::cdr::Cdr;
+use super::cdr::Cdr;
+use super::ros2::{self, Marker, Transform};
 use crate::firings::Firing;
 use crate::reading::LogReading;
-use crate::ros2::{self, Marker, Transform};
 use eeruf_files::FileError;
 
 /// An MCAP file, open for writing.

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use eeruf_files::FileError;
 
-use crate::bytes::{Bytes, Order};
+use super::bytes::{Bytes, Order};
 use crate::reading::{LogReading, Sensor};
 use crate::sink::{Sink, Skipped};
 
@@ -88,11 +88,12 @@ pub(crate) fn read(flight: Flight, input: &mut dyn Read, file: &Path, sink: &mut
     if damaged > 0 {
         sink.damage(file, Some(input.at), format!("{damaged} bytes that are no message were passed over"));
     }
-    let (topic, found) = (flight.message().to_owned(), sink.report.sensors.len());
-    let why = "of lasers, radars and infrared light".to_owned();
-    sink.report.skipped.extend((other > 0).then(|| Skipped { topic: topic.clone(), why, messages: other }));
-    let why = format!("no such message in {}", flight.name());
-    sink.report.skipped.extend((found == 0 && other == 0).then_some(Skipped { topic, why, messages: 0 }));
+    let skipped = |why| Skipped { messages: other, ..Skipped::new(flight.message(), why) };
+    if other > 0 {
+        sink.report.skipped.push(skipped("of lasers, radars and infrared light".to_owned()));
+    } else if sink.report.sensors.is_empty() {
+        sink.report.skipped.push(skipped(format!("no such message in {}", flight.name())));
+    }
     Ok(())
 }
 

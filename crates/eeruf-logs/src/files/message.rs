@@ -3,11 +3,11 @@
 //! `Range` has had a `variance` since ROS 2 Iron. The file's schema says whether a message has one; without a schema
 //! the message's length does.
 
+use super::ros2;
+use super::schema::{Decoder, Encoding, Schema};
 use crate::names;
 use crate::options::{Options, RangeUnit};
 use crate::reading::LogReading;
-use crate::ros2;
-use crate::schema::{Decoder, Encoding, Schema};
 
 /// The kind of messages, and the decoders for them, of which the first that fits applies.
 #[derive(Debug)]

@@ -6,11 +6,13 @@ use std::path::{Path, PathBuf};
 use rusqlite::{Connection, OpenFlags};
 use saphyr::{LoadableYamlNode, Yaml};
 
-use crate::form::{self, Form};
-use crate::schema::Encoding;
+use super::bag;
+use super::form::{Form, Opened};
+use super::mcap::Mcap;
+use super::schema::Encoding;
+use super::topics::Topic;
+use super::unzstd::{LARGEST_MESSAGE, Unzstd};
 use crate::sink::Sink;
-use crate::topics::Topic;
-use crate::unzstd::{LARGEST_MESSAGE, Unzstd};
 use eeruf_files::FileError;
 
 /// Contents of `metadata.yaml`.
@@ -48,7 +50,7 @@ pub(crate) fn read(folder: &Path, sink: &mut Sink<'_>) -> Result<(), FileError> 
         // A file that cannot be opened does not affect the others.
         let read = match file.extension().and_then(|ending| ending.to_str()) {
             Some("mcap") => match File::open(&file) {
-                Ok(mut opened) => crate::mcap::read(&mut opened, &file, found.packed, sink),
+                Ok(mut opened) => bag::read(Mcap::new(found.packed), &mut opened, &file, sink),
                 Err(error) => Err(FileError::reading(&file, &error)),
             },
             Some("db3") => read_sqlite(&file, &file, found.packed, sink),
@@ -66,21 +68,17 @@ pub(crate) fn read(folder: &Path, sink: &mut Sink<'_>) -> Result<(), FileError> 
 
 /// Reads a file of a bag that is compressed as a whole.
 fn read_packed(file: &Path, sink: &mut Sink<'_>) -> Result<(), FileError> {
-    let failed = |error: std::io::Error| FileError::reading(file, &error);
-    let Form::Packed(packing) = Form::of_file(file)? else {
-        return Err(FileError::new(file, "a file of unknown kind; expected .mcap or .db3, also packed by zstd"));
-    };
-    let input = packing.unpack(File::open(file).map_err(failed)?).map_err(failed)?;
-    let (unpacked, error) = form::to_file(input, "bag").map_err(failed)?;
-    match Form::of_file(unpacked.path())? {
-        Form::Mcap => crate::mcap::read(&mut unpacked.as_file(), file, false, sink)?,
-        Form::Sqlite => read_sqlite(unpacked.path(), file, false, sink)?,
-        other => return Err(FileError::new(file, format!("{} within; expected MCAP or SQLite", other.name()))),
+    let opened = File::open(file).and_then(|opened| Opened::new(opened, file));
+    let mut opened = opened.map_err(|error| FileError::reading(file, &error))?;
+    match (opened.packing, opened.form) {
+        (None, _) => Err(FileError::new(file, "a file of unknown kind; expected .mcap or .db3, also packed by zstd")),
+        (_, Form::Mcap | Form::Sqlite) => {
+            super::read_copy(&mut opened, file, sink)?;
+            opened.tell(file, sink);
+            Ok(())
+        }
+        (_, other) => Err(FileError::new(file, format!("{} within; expected MCAP or SQLite", other.name()))),
     }
-    if let Some(error) = error {
-        sink.damage(file, None, format!("it cannot be unpacked to its end: {error}; what comes before was read"));
-    }
-    Ok(())
 }
 
 impl Metadata {

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use crate::bytes::{Bytes, Number, Order};
+use super::bytes::{Bytes, Number, Order};
 
 /// Largest depth of nested types.
 const DEEPEST: usize = 16;

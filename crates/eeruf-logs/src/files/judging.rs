@@ -6,8 +6,8 @@ use eeruf_core::judge::Verdict;
 use eeruf_core::{EchoFilter, Micros, ReadingKind, RingError, SensorError, Tally};
 use eeruf_files::FileError;
 
+use super::write::McapWriter;
 use crate::reading::{Echo, LogReading, Sensor};
-use crate::write::McapWriter;
 
 /// A judge that compares consecutive readings of each sensor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,12 +1,12 @@
 //! Files of firings, in any format.
 
 use std::fs::File;
-use std::io::{self, BufReader, Read};
+use std::io::{self, Read};
 use std::path::Path;
 
+use super::form::{Form, Opened};
+use super::{firing_messages, firing_text, serial};
 use crate::firings::FiringLog;
-use crate::form::{self, Form, UntilError};
-use crate::{firing_messages, firing_text, serial};
 use eeruf_files::FileError;
 
 /// The error for a log of ranges instead of firings.
@@ -38,27 +38,17 @@ impl FiringLog {
     /// See [`FiringLog::read`].
     pub fn read_from(mut input: impl Read, name: &Path) -> Result<Self, FileError> {
         let failed = |error: io::Error| FileError::reading(name, &error);
-        let first = form::first_bytes(&mut input).map_err(failed)?;
-        let mut input = first.as_slice().chain(input);
-        let Form::Packed(packing) = Form::of(&first, name) else { return Self::of_form(&first, &mut input, name) };
-        let input: &mut dyn Read = &mut input;
-        let (mut error, mut unpacked) = (None, packing.unpack(BufReader::new(input)).map_err(failed)?);
-        let first = form::first_bytes(UntilError::new(&mut unpacked, &mut error)).map_err(failed)?;
-        let read = Self::of_form(&first, &mut UntilError::new(first.as_slice().chain(unpacked), &mut error), name);
-        match error {
-            Some(error) => Err(FileError::new(name, format!("it cannot be unpacked: {error}"))),
-            None => read,
-        }
-    }
-
-    /// Recognises the form by the first bytes.
-    fn of_form(first: &[u8], input: &mut dyn Read, name: &Path) -> Result<Self, FileError> {
-        match Form::of(first, name) {
-            Form::Mcap => firing_messages::read(input, name),
-            Form::Text => firing_text::read(input, name),
-            Form::Serial => serial::firings(input, name),
+        let mut opened = Opened::new(&mut input, name).map_err(failed)?;
+        let read = match opened.form {
+            Form::Mcap => firing_messages::read(&mut opened, name),
+            Form::Text => firing_text::read(&mut opened, name),
+            Form::Serial => serial::firings(&mut opened, name),
             Form::Foreign(foreign) => Err(foreign.refuse(name)),
             other => Err(not_firings(name, other.name())),
+        };
+        match opened.error {
+            Some(error) => Err(FileError::new(name, format!("it cannot be unpacked: {error}"))),
+            None => read,
         }
     }
 }

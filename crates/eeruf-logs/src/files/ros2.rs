@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use crate::cdr::Cdr;
+use super::cdr::Cdr;
 use crate::firings::Firing;
 use crate::reading::LogReading;
 

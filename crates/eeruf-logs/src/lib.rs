@@ -57,8 +57,7 @@ use eeruf_files::FileError;
 use sink::Sink;
 
 pub use diagnose::{
-    Diagnosis, FoundPath, Hearing, KeepGoing, Named, Settings, Share, Timing, TimingError, diagnose, diagnose_while,
-    timing,
+    Diagnosis, FoundPath, Hearing, KeepGoing, Named, Settings, Share, Timing, diagnose, diagnose_while, timing,
 };
 pub use doctor::{Doctor, Examination, LogVerdict, Suspect};
 #[cfg(feature = "files")]

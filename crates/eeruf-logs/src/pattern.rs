@@ -1,7 +1,5 @@
 //! The firing pattern of a ring, from the times of its readings, and what agreement of readings proves for it.
 
-use std::fmt;
-
 /// Pattern in which the sensors of a ring fire relative to each other.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Pattern {
@@ -101,16 +99,6 @@ impl FiringPattern {
                  agreement shows nothing about crosstalk; it does if lags alternate, as `eeruf design` plans them",
                 self.why
             ),
-        }
-    }
-}
-
-impl fmt::Display for FiringPattern {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.pattern.as_str())?;
-        match self.period_us {
-            Some(us) => write!(f, ", each sensor every {:.1} ms", us as f64 * 1e-3),
-            None => Ok(()),
         }
     }
 }

@@ -34,7 +34,7 @@ pub use sensors::Hearing;
 use sensors::hearing;
 pub use share::Share;
 use timeline::Timeline;
-pub use timing::{Timing, TimingError, timing};
+pub use timing::{Timing, timing};
 
 /// Settings of the search for paths.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,7 +1,5 @@
 //! Jitter, lateness and drift of firings relative to a fixed schedule.
 
-use core::fmt;
-
 use crate::firings::FiringLog;
 
 /// Adherence of firings to a schedule.
@@ -19,54 +17,6 @@ pub struct Timing {
     pub firings: usize,
 }
 
-/// Reason why firings cannot be compared with a schedule.
-#[derive(Clone, Copy, Debug, PartialEq)]
-#[non_exhaustive]
-pub enum TimingError {
-    /// The log has a sensor or a phase that the schedule does not have.
-    NotScheduled {
-        /// The sensor, from 0.
-        sensor: u8,
-        /// The phase, from 0.
-        phase: u8,
-    },
-    /// Firings differ from the schedule: lags have moved, or it is another schedule.
-    Moved {
-        /// The share of firings that are more than 1 ms from the schedule.
-        share: f64,
-    },
-    /// The length of periods differs by more than a clock's error.
-    Rate {
-        /// The log's period, as a share of the schedule's.
-        share: f64,
-    },
-    /// Fewer than ten periods.
-    Short,
-}
-
-impl fmt::Display for TimingError {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match *self {
-            Self::NotScheduled { sensor, phase } => {
-                write!(f, "the log has sensor {} in phase {phase}, which the schedule does not have", sensor + 1)
-            }
-            Self::Moved { share } => write!(
-                f,
-                "{:.0} % of the firings are more than 1 ms from the schedule; expected the one that the ring fired by, \
-                 with lags that did not move",
-                100.0 * share
-            ),
-            Self::Rate { share } => {
-                let percent = 100.0 * share;
-                write!(f, "its periods last {percent:.1} % of the schedule's; expected 90 to 110 %")
-            }
-            Self::Short => write!(f, "fewer than ten periods; expected ten or more"),
-        }
-    }
-}
-
-impl core::error::Error for TimingError {}
-
 /// Largest plausible clock error, that of microcontrollers without a crystal.
 const MOST_DRIFT: f64 = 0.1;
 /// Distance from the schedule, in microseconds, beyond which a firing is of another one.
@@ -76,22 +26,20 @@ const ELSEWHERE_US: f64 = 1000.0;
 /// a phase (both from 0) after the start of the period.
 ///
 /// # Errors
-/// [`TimingError`] for a schedule that is not the ring's, or lags that moved.
-pub fn timing(
-    log: &FiringLog,
-    period_us: u32,
-    fires_at: impl Fn(u8, u8) -> Option<u32>,
-) -> Result<Timing, TimingError> {
+/// A schedule that is not the ring's, lags that moved, or fewer than ten periods.
+pub fn timing(log: &FiringLog, period_us: u32, fires_at: impl Fn(u8, u8) -> Option<u32>) -> Result<Timing, String> {
     let mut points = Vec::with_capacity(log.firings.len());
     for firing in &log.firings {
         let (sensor, phase) = (firing.sensor, firing.phase);
-        let in_period = fires_at(sensor, phase).ok_or(TimingError::NotScheduled { sensor, phase })?;
+        let in_period = fires_at(sensor, phase).ok_or_else(|| {
+            format!("the log has sensor {} in phase {phase}, which the schedule does not have", sensor + 1)
+        })?;
         let due = f64::from(firing.period) * f64::from(period_us) + f64::from(in_period);
         points.push((due, firing.fired_us as f64 - due));
     }
     let periods = log.firings.iter().map(|firing| firing.period);
     if periods.clone().max().unwrap_or(0) - periods.min().unwrap_or(0) < 10 {
-        return Err(TimingError::Short);
+        return Err("fewer than ten periods; expected ten or more".to_owned());
     }
     let n = points.len() as f64;
     let mean = |of: fn(&(f64, f64)) -> f64| points.iter().map(of).sum::<f64>() / n;
@@ -99,12 +47,17 @@ pub fn timing(
     let spread = points.iter().map(|point| (point.0 - x).powi(2)).sum::<f64>();
     let slope = points.iter().map(|point| (point.0 - x) * (point.1 - y)).sum::<f64>() / spread;
     if slope.abs() > MOST_DRIFT {
-        return Err(TimingError::Rate { share: 1.0 + slope });
+        let percent = 100.0 * (1.0 + slope);
+        return Err(format!("its periods last {percent:.1} % of the schedule's; expected 90 to 110 %"));
     }
     let mut off: Vec<_> = points.iter().map(|point| point.1 - y - slope * (point.0 - x)).collect();
     let elsewhere = off.iter().filter(|off| off.abs() > ELSEWHERE_US).count() as f64 / n;
     if elsewhere > 0.05 {
-        return Err(TimingError::Moved { share: elsewhere });
+        return Err(format!(
+            "{:.0} % of the firings are more than 1 ms from the schedule; expected the one that the ring fired by, \
+             with lags that did not move",
+            100.0 * elsewhere
+        ));
     }
     let jitter_us = (off.iter().map(|off| off * off).sum::<f64>() / (n - 2.0).max(1.0)).sqrt();
     off.sort_by(f64::total_cmp);

@@ -9,9 +9,9 @@ use eeruf_files::FileError;
 
 use super::bag::Form as _;
 use super::flight::Flight;
+use super::mcap::Mcap;
+use super::ros1::Ros1;
 use crate::sink::Sink;
-
-const SQLITE_MAGIC: &[u8; 16] = b"SQLite format 3\0";
 
 /// A form that is recognised.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -40,52 +40,46 @@ pub(crate) struct Foreign(&'static str, &'static str);
 
 const XZ: Foreign = Foreign("packed by xz", "");
 const BINARY: Foreign = Foreign("binary data of an unknown form", "");
-const FRAMES: [(&[u8], Foreign); 4] = [
-    (b"%PDF", Foreign("a PDF", "")),
-    (b"PK\x03\x04", Foreign("a zip archive or a spreadsheet", "read_excel")),
-    (b"PAR1", Foreign("a Parquet file", "read_parquet")),
-    (b"\x89HDF", Foreign("an HDF5 file", "read_hdf")),
+
+/// Forms by the first bytes of a file.
+const MAGICS: [(&[u8], Form); 13] = [
+    (Mcap::MAGIC, Form::Mcap),
+    (Ros1::MAGIC, Form::Ros1),
+    (b"SQLite format 3\0", Form::Sqlite),
+    (&[0x1f, 0x8b], Form::Packed(Packing::Gzip)),
+    (b"BZh", Form::Packed(Packing::Bzip2)),
+    (&[0x28, 0xb5, 0x2f, 0xfd], Form::Packed(Packing::Zstd)),
+    (b"\xfd7zXZ\0", Form::Foreign(XZ)),
+    (b"ULog\x01\x12\x35", Form::Flight(Flight::ULog)),
+    (&[0xa3, 0x95], Form::Flight(Flight::DataFlash)),
+    (b"%PDF", Form::Foreign(Foreign("a PDF", ""))),
+    (b"PK\x03\x04", Form::Foreign(Foreign("a zip archive or a spreadsheet", "read_excel"))),
+    (b"PAR1", Form::Foreign(Foreign("a Parquet file", "read_parquet"))),
+    (b"\x89HDF", Form::Foreign(Foreign("an HDF5 file", "read_hdf"))),
+];
+
+/// Forms by the ending of a file's name, if its first bytes do not say it.
+const ENDINGS: [(&str, Form); 5] = [
+    ("ulg", Form::Flight(Flight::ULog)),
+    ("tlog", Form::Flight(Flight::Telemetry)),
+    ("mcap", Form::Mcap),
+    ("bag", Form::Ros1),
+    ("db3", Form::Sqlite),
 ];
 
 impl Form {
     /// Recognises a form by the first bytes of a file, or by the ending of its name.
     pub(crate) fn of(first: &[u8], file: &Path) -> Self {
-        let ending = file.extension().and_then(|ending| ending.to_str()).unwrap_or_default().to_ascii_lowercase();
-        let starts = |magic: &[u8]| first.starts_with(magic);
-        let is_frame = |at: usize| matches!(first.get(at), Some(0xfe | 0xfd));
-        if starts(super::mcap::Mcap::MAGIC) {
-            Self::Mcap
-        } else if starts(super::ros1::Ros1::MAGIC) {
-            Self::Ros1
-        } else if starts(SQLITE_MAGIC) {
-            Self::Sqlite
-        } else if super::serial::is_serial(first) {
-            Self::Serial
-        } else if starts(&[0x1f, 0x8b]) {
-            Self::Packed(Packing::Gzip)
-        } else if starts(b"BZh") {
-            Self::Packed(Packing::Bzip2)
-        } else if starts(&[0xfd, b'7', b'z', b'X', b'Z', 0]) {
-            Self::Foreign(XZ)
-        } else if starts(&[0x28, 0xb5, 0x2f, 0xfd]) {
-            Self::Packed(Packing::Zstd)
-        } else if starts(b"ULog\x01\x12\x35") || ending == "ulg" {
-            Self::Flight(Flight::ULog)
-        } else if starts(&[0xa3, 0x95]) {
-            Self::Flight(Flight::DataFlash)
-        } else if ending == "tlog" || is_frame(8) && is_binary(first) && ending != "bag" {
-            Self::Flight(Flight::Telemetry)
-        } else if let Some((_, frame)) = FRAMES.iter().find(|of| starts(of.0)) {
-            Self::Foreign(*frame)
-        } else {
-            match ending.as_str() {
-                "mcap" => Self::Mcap,
-                "bag" => Self::Ros1,
-                "db3" => Self::Sqlite,
-                _ if is_binary(first) => Self::Foreign(BINARY),
-                _ => Self::Text,
-            }
-        }
+        let ending = file.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
+        let by_magic = MAGICS.iter().find(|(magic, _)| first.starts_with(magic)).map(|of| of.1);
+        let by_frames = || super::serial::is_serial(first).then_some(Self::Serial);
+        let by_ending = || ENDINGS.iter().find(|(own, _)| own.eq_ignore_ascii_case(ending)).map(|of| of.1);
+        by_magic.or_else(by_frames).or_else(by_ending).unwrap_or_else(|| match first.get(8) {
+            _ if !is_binary(first) => Self::Text,
+            // A frame after its time.
+            Some(0xfe | 0xfd) => Self::Flight(Flight::Telemetry),
+            _ => Self::Foreign(BINARY),
+        })
     }
 
     /// Reads the first bytes of a file.

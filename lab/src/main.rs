@@ -9,12 +9,10 @@ mod corpus;
 mod diagnose_places;
 mod echo_times;
 mod flow_tables;
-mod four_worlds;
 mod measure;
 mod narrow_panels;
 mod rust_side;
 mod shortest_periods;
-mod time_paths;
 mod uneven_rings;
 
 use std::error::Error;
@@ -27,7 +25,7 @@ type Answer = Result<(), Box<dyn Error>>;
 /// A command: its name, arguments and output.
 type Command = (&'static str, &'static str, &'static str, fn(&[String]) -> Answer);
 
-const COMMANDS: [Command; 12] = [
+const COMMANDS: [Command; 10] = [
     ("constant-depth", "", "angles at which a wall is heard, by distance and gain", constant_depth::main),
     (
         "diagnose-places",
@@ -42,7 +40,6 @@ const COMMANDS: [Command; 12] = [
         "flow beside one by one, with and without a median",
         flow_tables::main,
     ),
-    ("four-worlds", "[interference]", "Set I, flat and in a room, with two gains", four_worlds::main),
     (
         "measure",
         "[RING.toml ..] [--first N] [--places N] [--csv FILE] [--blocks N]",
@@ -58,7 +55,6 @@ const COMMANDS: [Command; 12] = [
         "shortest periods and their cost",
         shortest_periods::main,
     ),
-    ("time-paths", "", "time of the path finder", time_paths::main),
     ("uneven-rings", "[RINGS [SECONDS [FIRST]]]", "random rings for a race with peers", uneven_rings::main),
 ];
 

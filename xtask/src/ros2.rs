@@ -1,5 +1,5 @@
-//! `cargo xtask ros2`: a ring whose echo lines play edges, its serial line, the node `eeruf-ros2`, and Cyclone DDS, Fast
-//! DDS and pymavlink, which must receive the ring's readings; then `ros2/` as a ROS 2 package.
+//! `cargo xtask ros2`: a ring whose echo lines play edges, its serial line, the node `eeruf-ros2`, and Cyclone DDS,
+//! Fast DDS and pymavlink, which must receive the ring's readings; then `ros2/` as a ROS 2 package.
 
 use std::path::{Path, PathBuf, absolute};
 use std::process::Command;

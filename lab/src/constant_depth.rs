@@ -22,7 +22,7 @@ fn widest_deg(distance_m: f64, gain: GainProfile) -> Option<f64> {
     (0..900).rev().map(|tenths| 0.1 * f64::from(tenths)).find(|&deg| level_db(deg) >= 0.0)
 }
 
-pub(crate) fn main(_: &[String]) -> crate::Answer {
+pub(crate) fn main() -> crate::Answer {
     let header: Vec<_> = DISTANCES_M.iter().map(|distance_m| format!("{distance_m} m")).collect();
     println!("| gain | {} |", header.join(" | "));
     println!("|---|{}", "---:|".repeat(DISTANCES_M.len()));

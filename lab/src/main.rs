@@ -16,66 +16,59 @@ mod shortest_periods;
 mod uneven_rings;
 
 use std::error::Error;
-use std::io::Write as _;
 use std::process::ExitCode;
+
+use clap::Parser;
 
 /// Success, or the reason why nothing is printed.
 type Answer = Result<(), Box<dyn Error>>;
 
-/// A command: its name, arguments and output.
-type Command = (&'static str, &'static str, &'static str, fn(&[String]) -> Answer);
-
-const COMMANDS: [Command; 10] = [
-    ("constant-depth", "", "angles at which a wall is heard, by distance and gain", constant_depth::main),
-    (
-        "diagnose-places",
-        "[FIRST [PLACES [METHOD [PERIODS [PHYSICS]]]]]",
-        "senders that diagnose names",
-        diagnose_places::main,
-    ),
-    ("echo-times", "SCENE.toml [SENSORS]", "ways of sound in a scene, for simulated boards", echo_times::main),
-    (
-        "flow-tables",
-        "courses | robots | rooms [--ring FILE] [--first N] [--count N] [--csv FILE]",
-        "flow beside one by one, with and without a median",
-        flow_tables::main,
-    ),
-    (
-        "measure",
-        "[RING.toml ..] [--first N] [--places N] [--csv FILE] [--blocks N]",
-        "ways of firing by what a robot needs",
-        measure::main,
-    ),
-    ("narrow-panels", "", "panels narrower than a Fresnel zone", narrow_panels::main),
-    ("periods", "", "table of shortest periods", shortest_periods::table),
-    ("rust-side", "paths | times", "what Python is held against", rust_side::main),
-    (
-        "shortest-periods",
-        "[TICKS [SEPARATION [SENSORS [NEIGHBOURS [LAYOUTS [BUDGET [WINDOWS]]]]]]]",
-        "shortest periods and their cost",
-        shortest_periods::main,
-    ),
-    ("uneven-rings", "[RINGS [SECONDS [FIRST]]]", "random rings for a race with peers", uneven_rings::main),
-];
+/// Measurements that the documents quote
+#[derive(Parser)]
+#[command(bin_name = "cargo lab")]
+enum Command {
+    /// Angles at which a wall is heard, by distance and gain
+    ConstantDepth,
+    /// Senders that diagnose names
+    #[command(override_usage = "cargo lab diagnose-places [FIRST [PLACES [METHOD [PERIODS [PHYSICS]]]]]")]
+    DiagnosePlaces { words: Vec<String> },
+    /// Ways of sound in a scene, for simulated boards
+    #[command(override_usage = "cargo lab echo-times SCENE.toml [SENSORS]")]
+    EchoTimes { words: Vec<String> },
+    /// Flow beside one by one, with and without a median
+    FlowTables(flow_tables::Asked),
+    /// Ways of firing by what a robot needs
+    Measure(measure::Asked),
+    /// Panels narrower than a Fresnel zone
+    NarrowPanels,
+    /// Table of shortest periods
+    Periods,
+    /// What Python is held against
+    #[command(override_usage = "cargo lab rust-side paths|times")]
+    RustSide { words: Vec<String> },
+    /// Shortest periods and their cost
+    #[command(override_usage = "cargo lab shortest-periods [TICKS [SEPARATION [SENSORS [NEIGHBOURS [LAYOUTS [BUDGET \
+                                [WINDOWS]]]]]]]")]
+    ShortestPeriods { words: Vec<String> },
+    /// Random rings for a race with peers
+    #[command(override_usage = "cargo lab uneven-rings [RINGS [SECONDS [FIRST]]]")]
+    UnevenRings { words: Vec<String> },
+}
 
 fn main() -> ExitCode {
-    let words: Vec<String> = std::env::args().skip(1).collect();
-    let asked = words.split_first().and_then(|(name, arguments)| {
-        COMMANDS.iter().find(|(known, ..)| known == name).map(|command| (command, arguments))
-    });
-    let Some(((name, usage, _, run), arguments)) = asked else {
-        if let Some(name) = words.first() {
-            eprintln!("{name}: no command of the lab; `cargo lab` lists them");
-            return ExitCode::from(2);
-        }
-        // The reader of the list may close the pipe before its end.
-        let list = COMMANDS.map(|(name, usage, about, _)| format!("{name} {usage}\n    {about}\n")).concat();
-        _ = std::io::stdout().write_all(list.as_bytes());
-        return ExitCode::SUCCESS;
+    let answer = match Command::parse() {
+        Command::ConstantDepth => constant_depth::main(),
+        Command::DiagnosePlaces { words } => diagnose_places::main(&words),
+        Command::EchoTimes { words } => echo_times::main(&words),
+        Command::FlowTables(asked) => flow_tables::main(&asked),
+        Command::Measure(asked) => measure::main(&asked),
+        Command::NarrowPanels => narrow_panels::main(),
+        Command::Periods => shortest_periods::table(),
+        Command::RustSide { words } => rust_side::main(&words),
+        Command::ShortestPeriods { words } => shortest_periods::main(&words),
+        Command::UnevenRings { words } => uneven_rings::main(&words),
     };
-    if let Err(error) = run(arguments) {
-        eprintln!("{name}: {error}; usage: cargo lab {name} {usage}");
-        return ExitCode::FAILURE;
-    }
-    ExitCode::SUCCESS
+    let Err(error) = answer else { return ExitCode::SUCCESS };
+    eprintln!("{error}; see `cargo lab --help`");
+    ExitCode::FAILURE
 }

@@ -25,31 +25,23 @@ const BLOCK: u64 = 1_000;
 const CURVE: [f64; 3] = [0.1, 1.0, 10.0];
 
 /// The command's arguments.
-#[derive(Clone)]
-struct Arguments {
+#[derive(clap::Args)]
+pub(crate) struct Asked {
+    /// The rings; by default rings of 2, 4, 8, 12 and 24 HC-SR04
+    #[arg(value_name = "RING.toml")]
     rings: Vec<String>,
+    /// Number of the first room of each kind
+    #[arg(long, default_value_t = FIRST)]
     first: u64,
+    /// Number of rooms of each kind
+    #[arg(long, default_value_t = 6)]
     places: u64,
+    /// Write the rows to this file; by default to none
+    #[arg(long)]
     csv: Option<String>,
+    /// Print instead what is recommended in this many blocks of rooms
+    #[arg(long, default_value_t = 0)]
     blocks: u64,
-}
-
-impl Arguments {
-    fn of(arguments: &[String]) -> Result<Self, Box<dyn std::error::Error>> {
-        let mut asked = Self { rings: vec![], first: FIRST, places: 6, csv: None, blocks: 0 };
-        let mut words = arguments.iter();
-        while let Some(word) = words.next() {
-            let mut value = || words.next().ok_or_else(|| format!("{word}: no value; expected one"));
-            match word.as_str() {
-                "--first" => asked.first = value()?.parse()?,
-                "--places" => asked.places = value()?.parse()?,
-                "--blocks" => asked.blocks = value()?.parse()?,
-                "--csv" => asked.csv = Some(value()?.clone()),
-                _ => asked.rings.push(word.clone()),
-            }
-        }
-        Ok(asked)
-    }
 }
 
 /// Formats a number with its interval.
@@ -154,7 +146,7 @@ fn run(ways: &[RoomWay], asked: &MeasureAsked, first: u64) -> Result<Measured, E
 }
 
 /// Prints a row of what `eeruf design` recommends in blocks of rooms.
-fn recommended(file: &str, spec: &RingSpec, design: Option<&RingDesign>, asked: &Arguments) -> crate::Answer {
+fn recommended(file: &str, spec: &RingSpec, design: Option<&RingDesign>, asked: &Asked) -> crate::Answer {
     let row = (0..asked.blocks).map(|block| {
         let rooms = RoomsAsked { places: asked.places, first: asked.first + block * BLOCK, ..RoomsAsked::default() };
         let answer = spec.judge_in_rooms(design, &rooms, &|_| true)?;
@@ -166,17 +158,16 @@ fn recommended(file: &str, spec: &RingSpec, design: Option<&RingDesign>, asked: 
     Ok(())
 }
 
-pub(crate) fn main(arguments: &[String]) -> crate::Answer {
-    let given = Arguments::of(arguments)?;
-    let Arguments { rings, first, places, csv, blocks } = given.clone();
-    let mut out = csv.map(File::create).transpose()?.map(BufWriter::new);
+pub(crate) fn main(given: &Asked) -> crate::Answer {
+    let &Asked { ref rings, first, places, ref csv, blocks } = given;
+    let mut out = csv.as_ref().map(File::create).transpose()?.map(BufWriter::new);
     if let Some(out) = &mut out {
         writeln!(out, "ring,{}", Measured::CSV_HEAD)?;
     }
-    let read = |file: String| std::fs::read_to_string(&file).map(|text| (file, text));
+    let read = |file: &String| std::fs::read_to_string(file).map(|text| (file.clone(), text));
     let files: Vec<(String, String)> = match rings.is_empty() {
         true => SIZES.map(|sensors| (format!("{sensors} HC-SR04"), format!("sensors = {sensors}\n{RING}"))).into(),
-        false => rings.into_iter().map(read).collect::<Result<_, _>>()?,
+        false => rings.iter().map(read).collect::<Result<_, _>>()?,
     };
     for (file, text) in files {
         let spec = RingSpec::from_text(&text).map_err(|error| error.to_string())?;
@@ -189,7 +180,7 @@ pub(crate) fn main(arguments: &[String]) -> crate::Answer {
         let turn_deg_s = spec.room_turn_deg_s();
         let speeds = Speeds { speed_m_s: spec.room_speed_m_s(), turn_rad_s: turn_deg_s.to_radians() };
         if blocks > 0 {
-            recommended(&file, &spec, design.as_ref(), &given)?;
+            recommended(&file, &spec, design.as_ref(), given)?;
             continue;
         }
         let asked = MeasureAsked { conditions: Condition::ALL.into(), own: vec![], first, places, speeds };

@@ -6,7 +6,7 @@ use eeruf_sim::*;
 
 const WIDTHS_MM: [f64; 6] = [1.0, 10.0, 20.0, 50.0, 83.0, 100.0];
 
-pub(crate) fn main(_: &[String]) -> crate::Answer {
+pub(crate) fn main() -> crate::Answer {
     let widths = WIDTHS_MM.map(|width_mm| format!(" {width_mm} mm |")).concat();
     println!("| width |{widths}\n|---|{}", "---:|".repeat(WIDTHS_MM.len()));
     for distance_m in [1.0, 3.0] {

@@ -71,7 +71,7 @@ pub(crate) fn main(arguments: &[String]) -> crate::Answer {
 
 /// Prints the table: a row for each ring, a column for each window; period in ms, and in brackets nodes and
 /// milliseconds.
-pub(crate) fn table(_: &[String]) -> crate::Answer {
+pub(crate) fn table() -> crate::Answer {
     let windows: Vec<_> = list::<u32>(WINDOWS_MS).iter().map(|window_ms| format!("{window_ms} ms")).collect();
     print!("| ring | {} |\n|---|{}", windows.join(" | "), "---|".repeat(windows.len()));
     let mut last = String::new();

@@ -4,6 +4,7 @@
 
 use eeruf_period::engine::Problem;
 use eeruf_period::engine::shortest::shortest;
+use serde_json::json;
 
 use crate::clock::core_seconds;
 
@@ -63,16 +64,12 @@ pub(crate) fn main(arguments: &[String]) -> crate::Answer {
         let found = shortest(&problem, u64::MAX, &mut |so_far| step(so_far.best) < seconds);
         let found = found.ok_or("no schedule")?;
         let seconds = step(found.period);
-        let steps: Vec<String> = steps.iter().map(|(since, period)| format!("[{since}, {period}]")).collect();
-        let gaps: Vec<[u32; 4]> = problem.gaps.iter().map(|&(x, y, to, from)| [x as u32, y as u32, to, from]).collect();
+        let Problem { separation, window, gaps, .. } = &problem;
+        let (period, bound) = (found.period, found.bound);
         println!(
-            "{{\"separation\": {:?}, \"window\": {:?}, \"gaps\": {gaps:?}, \"period\": {}, \"bound\": {}, \
-             \"seconds\": {seconds}, \"steps\": [{}]}}",
-            problem.separation,
-            problem.window,
-            found.period,
-            found.bound,
-            steps.join(", ")
+            "{}",
+            json!({"separation": separation, "window": window, "gaps": gaps, "period": period,
+                              "bound": bound, "seconds": seconds, "steps": steps})
         );
     }
     Ok(())

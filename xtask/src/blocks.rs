@@ -46,14 +46,12 @@ pub(crate) fn check_listings() -> Result<()> {
 /// Compares the listings of a document: each holds the lines from the first that contains the text after `from` to the
 /// next that contains the text after `to`.
 fn check_listings_of(document: &str) -> Result<()> {
-    let text = fs::read_to_string(document)?;
-    let mut rest = text.as_str();
-    let mut listings = 0;
-    while let Some((_, after)) = rest.split_once("<!-- listing: ") {
-        let (what, after) =
-            after.split_once(" -->\n").with_context(|| format!("{document}: a listing comment has no end"))?;
-        let (_, after) = after.split_once('\n').with_context(|| format!("{document}: {what}"))?;
-        let (block, after) = after.split_once("```").with_context(|| format!("{document}: {what}"))?;
+    let (text, mut listings) = (fs::read_to_string(document)?, 0);
+    for after in text.split("<!-- listing: ").skip(1) {
+        let cut = || format!("{document}: the listing of {} has no end", after.lines().next().unwrap_or_default());
+        let (what, after) = after.split_once(" -->\n").with_context(cut)?;
+        let (_, after) = after.split_once('\n').with_context(cut)?;
+        let (block, _) = after.split_once("```").with_context(cut)?;
         let (file, range) = what.split_once(" from ").unwrap_or((what, ""));
         let (from, to) = range.rsplit_once(" to ").unwrap_or((range, ""));
         let source = fs::read_to_string(file)?;
@@ -64,7 +62,6 @@ fn check_listings_of(document: &str) -> Result<()> {
         let same = block.trim_end() == lines[first..last].join("\n").trim_end();
         ensure!(same, "{document}: the listing of {what} differs from the file");
         listings += 1;
-        rest = after;
     }
     if listings > 0 {
         println!("{document}: {listings} listings are as in their files");

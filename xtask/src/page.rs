@@ -1,20 +1,14 @@
 //! `cargo xtask page`: the page in `playground/`, as a folder for a server and as one file for a disk, and its tests.
 
-use std::collections::BTreeMap;
-use std::io::Write;
 use std::path::Path;
 use std::process::Command;
 use std::thread;
 
-use anyhow::{Context as _, Result, anyhow, ensure};
-use base64::Engine as _;
-use base64::prelude::BASE64_STANDARD;
-use flate2::Compression;
-use flate2::write::GzEncoder;
+use anyhow::{Result, anyhow};
 use fs_err as fs;
 
 use crate::c::npm;
-use crate::steps::{command, edited, need, output, run, skip};
+use crate::steps::{command, need, output, run, skip};
 use crate::toolchain::{cargo_for_target, target_folder};
 
 const TARGET: &str = "wasm32-unknown-unknown";
@@ -22,16 +16,15 @@ const SOURCES: &str = "playground/page";
 const TESTS: &str = "playground/tests";
 /// The folder for a server.
 const FOLDER: &str = "target/page/folder";
-/// The single file for a disk, and the scripts bundled for it: browsers load no modules from a disk.
+/// The single file for a disk.
 const SINGLE: &str = "target/page/who-fools-whom.html";
-const BUNDLED: &str = "target/page/bundled";
 /// The command that makes the engine smaller, with the features of WebAssembly that the compiler may use.
 const SHRINK: &str = "wasm-opt -Os --enable-bulk-memory --enable-mutable-globals --enable-nontrapping-float-to-int \
                       --enable-sign-ext --enable-reference-types --enable-multivalue";
 /// Packages that npm last installed for the tests.
 const INSTALLED: &str = "node_modules/.installed.json";
-/// The module that differs between the folder and the one file, and its replacement there.
-const PLATFORM: [&str; 2] = ["platform.js", "platform-single.js"];
+/// The module that the one file has in place of another of the folder.
+const PLATFORM_OF_SINGLE: &str = "platform-single.js";
 
 /// Builds the page and, if asked to, runs the tests that `cargo xtask test` runs, or all of them.
 pub(crate) fn page(short: bool, long: bool) -> Result<()> {
@@ -56,12 +49,12 @@ fn build() -> Result<()> {
     fs::create_dir_all(FOLDER)?;
     let engine = format!("{FOLDER}/eeruf.wasm");
     shrink(&built.join(TARGET).join("page/eeruf_playground.wasm"), Path::new(&engine))?;
-    let sources = sources()?;
-    for (name, text) in sources.iter().filter(|(name, _)| **name != PLATFORM[1]) {
-        fs::write(format!("{FOLDER}/{name}"), text)?;
+    for entry in fs::read_dir(SOURCES)?.filter_map(Result::ok) {
+        if entry.file_name() != PLATFORM_OF_SINGLE {
+            fs::copy(entry.path(), Path::new(FOLDER).join(entry.file_name()))?;
+        }
     }
-    let engine = fs::read(&engine)?;
-    fs::write(SINGLE, single(&sources, &engine)?)?;
+    run(Command::new("node").arg(format!("{TESTS}/single.js")).args([SOURCES, &engine, SINGLE]))?;
     println!("{FOLDER}/index.html is for a server, {SINGLE} for a disk");
     Ok(())
 }
@@ -78,65 +71,6 @@ fn shrink(from: &Path, to: &Path) -> Result<()> {
     println!("no wasm-opt, so the engine is a little larger; try: apt install binaryen");
     fs::copy(from, to)?;
     Ok(())
-}
-
-/// Returns the page's files by name.
-fn sources() -> Result<BTreeMap<String, String>> {
-    let mut sources = BTreeMap::new();
-    for entry in fs::read_dir(SOURCES)? {
-        let path = entry?.path();
-        let name = path.file_name().map(|name| name.to_string_lossy().into_owned()).unwrap_or_default();
-        let text = fs::read_to_string(&path)?;
-        sources.insert(name, text);
-    }
-    Ok(sources)
-}
-
-/// Makes the page as one file: style, scripts and engine within it.
-fn single(sources: &BTreeMap<String, String>, engine: &[u8]) -> Result<String> {
-    let html = sources.get("index.html").with_context(|| format!("{SOURCES}: no index.html"))?;
-    let style = sources.get("style.css").map(String::as_str).unwrap_or_default();
-    fs::create_dir_all(BUNDLED)?;
-    for (name, text) in sources.iter().filter(|(name, _)| **name != PLATFORM[0]) {
-        fs::write(format!("{BUNDLED}/{}", if name == PLATFORM[1] { PLATFORM[0] } else { name }), text)?;
-    }
-    // The content of a script element ends at the first end tag, and HTML comments begin in it too.
-    let plain = |text: String| {
-        let is_plain = !text.contains("</script") && !text.contains("<!--");
-        ensure!(is_plain, "a script holds </script or <!--, which ends it in HTML");
-        Ok(text)
-    };
-    let scripts = format!(
-        "<script type=\"text/plain\" id=\"engine-packed\">{}</script>\n\
-         <script type=\"text/plain\" id=\"worker-source\">{}</script>\n\
-         <script>{}</script>",
-        packed(engine)?,
-        plain(bundle("worker.js")?)?,
-        plain(bundle("main.js")?)?,
-    );
-    let policy = "default-src 'none'; script-src 'unsafe-inline' 'wasm-unsafe-eval' blob:; worker-src blob:; \
-                  style-src 'unsafe-inline'; img-src data:";
-    let of_folder = html.split('"').find(|part| part.starts_with("default-src")).context("index.html: no policy")?;
-    let style = format!("<style>\n{style}</style>");
-    let link = "<link rel=\"stylesheet\" href=\"style.css\">";
-    edited(
-        html,
-        &[(of_folder, policy), (link, &style), ("<script type=\"module\" src=\"main.js\"></script>", &scripts)],
-    )
-}
-
-/// Bundles a module and all its imports as one classic script.
-fn bundle(entry: &str) -> Result<String> {
-    let mut esbuild = Command::new(Path::new(TESTS).join("node_modules/.bin/esbuild"));
-    esbuild.args(["--bundle", "--format=iife", "--charset=utf8", "--log-level=warning"]);
-    output(esbuild.arg(format!("{BUNDLED}/{entry}")))
-}
-
-/// Encodes the engine as text: compressed first, since text compresses badly.
-fn packed(engine: &[u8]) -> Result<String> {
-    let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
-    let packed = encoder.write_all(engine).and_then(|()| encoder.finish());
-    Ok(BASE64_STANDARD.encode(packed?))
 }
 
 /// Installs the packages that bundle and test the page, unless they are installed.
@@ -169,10 +103,8 @@ fn test(long: bool) -> Result<()> {
     if output(Command::new("node").args([beside, "--version"])).is_ok() {
         node.arg(beside);
     }
-    let browsers = ["chromium", "chromium-browser", "google-chrome"];
-    let path = std::env::var_os("PATH").unwrap_or_default();
-    let mut found = std::env::split_paths(&path).flat_map(|folder| browsers.map(|name| folder.join(name)));
-    let Some(browser) = found.find(|path| path.is_file()) else {
+    let browsers = "command -v chromium || command -v chromium-browser || command -v google-chrome";
+    let Ok(browser) = output(Command::new("sh").args(["-c", browsers])) else {
         run(node.arg("engine.test.js"))?;
         return skip("the engine is tested, the page is not: no browser; try: apt install chromium");
     };

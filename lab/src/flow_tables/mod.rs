@@ -87,10 +87,29 @@ impl Table {
 }
 
 /// The command's arguments.
+#[derive(clap::Args)]
 pub(crate) struct Asked {
+    #[arg(value_enum)]
+    part: Part,
+    /// The ring
+    #[arg(long, value_name = "FILE", default_value = "rings/hc-sr04-8.toml")]
     ring: String,
+    /// Number of the first course, placing or room
+    #[arg(long, default_value_t = FIRST)]
     first: u64,
+    /// Number of courses, of placings of a condition, or of rooms of a kind
+    #[arg(long, default_value_t = 200)]
     count: u64,
+    /// Append the rows to this file; by default to none
+    #[arg(long, value_name = "FILE")]
+    csv: Option<String>,
+}
+
+#[derive(Clone, Copy, clap::ValueEnum)]
+enum Part {
+    Courses,
+    Robots,
+    Rooms,
 }
 
 impl Asked {
@@ -112,31 +131,17 @@ fn usual() -> Vec<Entry> {
     ]
 }
 
-pub(crate) fn main(arguments: &[String]) -> crate::Answer {
-    let mut words = arguments.iter();
-    let part = words.next().ok_or("no table; expected one of them")?;
-    let mut asked = Asked { ring: "rings/hc-sr04-8.toml".into(), first: FIRST, count: 200 };
-    let mut csv = None;
-    while let Some(word) = words.next() {
-        let mut value = || words.next().ok_or_else(|| format!("{word}: no value; expected one"));
-        match word.as_str() {
-            "--ring" => asked.ring.clone_from(value()?),
-            "--first" => asked.first = value()?.parse()?,
-            "--count" => asked.count = value()?.parse()?,
-            "--csv" => csv = Some(value()?.clone()),
-            _ => return Err(format!("{word}: no option").into()),
-        }
-    }
-    let Asked { first, count, ring, .. } = &asked;
-    println!("{part}: {count} from {first} on, {ring}.\n");
-    let table = match part.as_str() {
-        "courses" => courses::table(&asked)?,
-        "robots" => robots::table(&asked)?,
-        "rooms" => rooms::table(&asked)?,
-        _ => return Err(format!("{part}: no table").into()),
+pub(crate) fn main(asked: &Asked) -> crate::Answer {
+    let Asked { part, ring, first, count, csv } = asked;
+    let (name, table): (_, fn(&Asked) -> _) = match part {
+        Part::Courses => ("courses", courses::table),
+        Part::Robots => ("robots", robots::table),
+        Part::Rooms => ("rooms", rooms::table),
     };
+    println!("{name}: {count} from {first} on, {ring}.\n");
+    let table = table(asked)?;
     if let Some(file) = csv {
-        table.append(&file)?;
+        table.append(file)?;
     }
     Ok(())
 }

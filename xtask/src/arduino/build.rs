@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 use std::sync::Mutex;
 
-use anyhow::{Result, anyhow};
+use anyhow::{Result, bail};
 use fs_err as fs;
 
 use super::TARGET;
@@ -138,8 +138,6 @@ pub(super) fn size(elf: &Path) -> Result<(u64, u64)> {
     let size = output(Command::new("avr-size").arg(elf))?;
     let numbers: Vec<u64> =
         size.lines().nth(1).into_iter().flat_map(str::split_whitespace).filter_map(|n| n.parse().ok()).collect();
-    match numbers[..] {
-        [text, data, bss, ..] => Ok((text + data, data + bss)),
-        _ => Err(anyhow!("avr-size said: {size}")),
-    }
+    let [text, data, bss, ..] = numbers[..] else { bail!("avr-size said: {size}") };
+    Ok((text + data, data + bss))
 }

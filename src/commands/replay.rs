@@ -128,8 +128,9 @@ fn judging(args: &Args) -> Result<Judging, InputError> {
 
 fn print(args: &Args, report: &Report, counted: &[Counted], kinds: Vec<Vec<ReadingKind>>) -> Result<(), InputError> {
     let names = report.names();
-    let counts: Vec<_> = names.iter().zip(counted).map(|(name, counted)| Counts::of(name, counted)).collect();
-    let total = counts.iter().fold(Counts::default(), Counts::plus);
+    let of_sensor = |(name, counted): (&String, &Counted)| Counts::of(Some(name), std::slice::from_ref(counted));
+    let counts: Vec<_> = names.iter().zip(counted).map(of_sensor).collect();
+    let total = Counts::of(None, counted);
     if let Some(file) = &args.svg {
         let column = |(name, kinds): (&String, Vec<ReadingKind>)| Column { name: name.clone(), kinds };
         let columns: Vec<_> = names.iter().zip(kinds).map(column).collect();

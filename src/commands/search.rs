@@ -64,14 +64,7 @@ enum Best {
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let spec = read_waits(&args.file)?;
-    let watch = Watch::ending_after(args.time_limit.unwrap_or(Duration::MAX));
-    let found = match args.best {
-        _ if args.count => count(args, &spec, &watch),
-        Some(Best::Pareto) => front(args, &spec, &watch),
-        best => find(args, &spec, best, &watch),
-    };
-    drop(watch);
-    let (answer, text) = found.map_err(|error| InputError::new(&args.file, error))?;
+    let (answer, text) = searched(args, &spec).map_err(|error| InputError::new(&args.file, error))?;
     if args.json {
         print_line(text)?;
     } else {
@@ -80,13 +73,38 @@ pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     Ok(answer)
 }
 
-/// Returns the answer of a search, by whether it found a table and completed its proof.
-fn answer(found: bool, proven: bool) -> Answer {
-    match (found, proven) {
+/// Searches, and returns the answer, as JSON or as text; without a table the text says why there is none.
+fn searched(args: &Args, spec: &WaitSpec) -> Result<(Answer, String), SearchError> {
+    let watch = Watch::ending_after(args.time_limit.unwrap_or(Duration::MAX));
+    let (search, mut memory) = (WaitSearch::new(&spec.problem())?, vec![0; memory_words(spec.problem().sensors)]);
+    let found = within(args.budget, &watch, |budget| match args.best {
+        _ if args.count => Ok(count(&search, budget)),
+        Some(Best::Pareto) => front(&search, &mut memory, budget),
+        best => find(&search, &mut memory, best, budget),
+    })?;
+    let answer = match (found.any, found.proven) {
         (true, _) => Answer::Yes,
         (false, true) => Answer::No,
         (false, false) => Answer::NotDecided,
+    };
+    if args.json {
+        return Ok((answer, found.json));
     }
+    let mut text = found.text;
+    if matches!(answer, Answer::No) {
+        // The requirement that cannot be met, in a line.
+        let why = within(REASON_BUDGET, &watch, |budget| search.why_none(&mut memory, budget))?;
+        text += &format!("{why}\n");
+    }
+    Ok((answer, text))
+}
+
+/// What a search found: whether there is a table, whether no answer is missing, and both forms of the output.
+struct Answered {
+    any: bool,
+    proven: bool,
+    json: String,
+    text: String,
 }
 
 /// Searches up to this many nodes, unless the user ends it.
@@ -95,84 +113,55 @@ fn within<T>(nodes: u64, watch: &Watch, search: impl FnOnce(&mut Budget<'_>) -> 
     search(&mut Budget::nodes_at_most(nodes).watched(WATCHED_EVERY, &mut watcher))
 }
 
-/// Returns the reason why there is no table, in a line.
-fn why_none(search: &WaitSearch, memory: &mut [u32], watch: &Watch) -> Result<String, SearchError> {
-    Ok(format!("{}\n", within(REASON_BUDGET, watch, |budget| search.why_none(memory, budget))?))
-}
-
-/// Counts the tables and prints the number.
-fn count(args: &Args, spec: &WaitSpec, watch: &Watch) -> Result<(Answer, String), SearchError> {
-    let search = WaitSearch::new(&spec.problem())?;
+/// Counts the tables.
+fn count(search: &WaitSearch, budget: &mut Budget<'_>) -> Answered {
     let began = Instant::now();
-    let ((outcome, count), nodes) =
-        within(args.budget, watch, |budget| (search.count(None, &mut vec![0; COUNT_WORDS], budget), budget.nodes()));
-    let exact = outcome == Outcome::Exhausted;
-    let answer = answer(count > 0, exact);
-    if args.json {
-        return Ok((answer, to_json(&CountJson { count, at_least: !exact })));
-    }
-    let at_least = if exact { "" } else { "at least " };
-    let seconds = began.elapsed().as_secs_f64();
+    let (outcome, count) = search.count(None, &mut vec![0; COUNT_WORDS], budget);
+    let (proven, nodes, seconds) = (outcome == Outcome::Exhausted, budget.nodes(), began.elapsed().as_secs_f64());
+    let at_least = if proven { "" } else { "at least " };
     let mut text = format!("{at_least}{count} tables ({nodes} nodes in {seconds:.3} s)\n");
-    match answer {
-        Answer::No => text += &why_none(&search, &mut vec![0; memory_words(spec.problem().sensors)], watch)?,
-        Answer::NotDecided => text += NOT_DECIDED,
-        Answer::Yes => {}
+    if count == 0 && !proven {
+        text += NOT_DECIDED;
     }
-    Ok((answer, text))
+    Answered { any: count > 0, proven, json: to_json(&CountJson { count, at_least: !proven }), text }
 }
 
-/// Finds one table, or the best, and prints it.
-fn find(args: &Args, spec: &WaitSpec, best: Option<Best>, watch: &Watch) -> Result<(Answer, String), SearchError> {
-    let search = WaitSearch::new(&spec.problem())?;
+/// Finds one table, or the best.
+fn find(
+    search: &WaitSearch,
+    memory: &mut [u32],
+    best: Option<Best>,
+    budget: &mut Budget<'_>,
+) -> Result<Answered, SearchError> {
     let began = Instant::now();
-    let mut memory = vec![0; memory_words(spec.problem().sensors)];
-    let (what, found): (_, Found<MAX_SENSORS>) = within(args.budget, watch, |budget| match best {
-        Some(Best::Interval) => Ok(("smallest interval ", search.best_interval(&mut memory, budget)?)),
-        Some(Best::TDelta) => Ok(("t_delta ", search.best_t_delta(&mut memory, budget)?)),
-        Some(Best::Waits) => Ok(("longest wait ", search.shortest_waits(&mut memory, budget)?)),
-        Some(Best::Period) => Ok(("period ", search.shortest_period(&mut memory, budget)?)),
+    let (what, found): (_, Found<MAX_SENSORS>) = match best {
+        Some(Best::Interval) => ("smallest interval ", search.best_interval(memory, budget)?),
+        Some(Best::TDelta) => ("t_delta ", search.best_t_delta(memory, budget)?),
+        Some(Best::Waits) => ("longest wait ", search.shortest_waits(memory, budget)?),
+        Some(Best::Period) => ("period ", search.shortest_period(memory, budget)?),
         Some(Best::Pareto) | None => {
-            let outcome = search.first(&mut memory, budget)?;
+            let outcome = search.first(memory, budget)?;
             let (proven, nodes) = (outcome != Outcome::BudgetSpent, budget.nodes());
             let schedule = if let Outcome::Found(schedule) = outcome { Some(schedule) } else { None };
-            Ok::<_, SearchError>(("a table", Found { schedule, value: None, bound: None, proven, nodes }))
+            ("a table", Found { schedule, value: None, bound: None, proven, nodes })
         }
-    })?;
+    };
     let seconds = began.elapsed().as_secs_f64();
-    let answer = answer(found.schedule.is_some(), found.proven);
-    if args.json {
-        return Ok((answer, to_json(&FoundJson::new(&found, seconds))));
-    }
-    let mut text = format!("{}\n", describe(what, &found, seconds));
-    if matches!(answer, Answer::No) {
-        text += &why_none(&search, &mut memory, watch)?;
-    }
-    Ok((answer, text))
+    let (json, text) = (to_json(&FoundJson::new(&found, seconds)), format!("{}\n", describe(what, &found, seconds)));
+    Ok(Answered { any: found.schedule.is_some(), proven: found.proven, json, text })
 }
 
-/// Follows the Pareto front of interval and `t_delta`, and prints its tables.
-fn front(args: &Args, spec: &WaitSpec, watch: &Watch) -> Result<(Answer, String), SearchError> {
-    let search = WaitSearch::new(&spec.problem())?;
+/// Follows the Pareto front of interval and `t_delta`.
+fn front(search: &WaitSearch, memory: &mut [u32], budget: &mut Budget<'_>) -> Result<Answered, SearchError> {
     let began = Instant::now();
-    let mut memory = vec![0; memory_words(spec.problem().sensors)];
     let mut tables: Vec<FrontTable<MAX_SENSORS>> = Vec::new();
-    let (complete, nodes) = within(args.budget, watch, |budget| {
-        loop {
-            match search.next_on_front(tables.last(), &mut memory, budget)? {
-                Outcome::Found(table) => tables.push(table),
-                outcome => break Ok::<_, SearchError>((outcome == Outcome::Exhausted, budget.nodes())),
-            }
+    let proven = loop {
+        match search.next_on_front(tables.last(), memory, budget)? {
+            Outcome::Found(table) => tables.push(table),
+            outcome => break outcome == Outcome::Exhausted,
         }
-    })?;
-    let seconds = began.elapsed().as_secs_f64();
-    let answer = answer(!tables.is_empty(), complete);
-    if args.json {
-        return Ok((answer, to_json(&FrontJson::new(&tables, complete, nodes, seconds))));
-    }
-    let mut text = describe_front(&tables, complete, nodes, seconds);
-    if matches!(answer, Answer::No) {
-        text += &why_none(&search, &mut memory, watch)?;
-    }
-    Ok((answer, text))
+    };
+    let (nodes, seconds) = (budget.nodes(), began.elapsed().as_secs_f64());
+    let json = to_json(&FrontJson::new(&tables, proven, nodes, seconds));
+    Ok(Answered { any: !tables.is_empty(), proven, json, text: describe_front(&tables, proven, nodes, seconds) })
 }

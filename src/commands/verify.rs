@@ -2,7 +2,6 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::ValueEnum;
 use eeruf_core::{Criterion, Layout, Micros, Requirements};
 use eeruf_design::atlas::{ATLAS, answer as answer_of};
 use eeruf_design::{LayoutKey, LayoutName, RingSpec};
@@ -13,6 +12,7 @@ use super::{Answer, show};
 use crate::files::error::InputError;
 use crate::files::ring::read_ring;
 use crate::files::toml::read_schedule;
+use crate::files::waits::CriterionKey;
 use crate::report::verify::{ReportJson, describe};
 
 /// Check a schedule: does crosstalk shift by more than 2 T_delta, and do neighbours keep their distance?
@@ -38,8 +38,8 @@ pub(crate) struct Args {
     #[arg(long, default_value = "line", value_name = "LAYOUT", value_parser = layout)]
     layout: LayoutKey,
     /// Reading of (13a), (13b)
-    #[arg(long, value_enum, default_value_t = CriterionArg::Exact)]
-    criterion: CriterionArg,
+    #[arg(long, value_enum, default_value_t = CriterionKey::Exact)]
+    criterion: CriterionKey,
     /// T_wind: how long a sensor listens, in microseconds
     #[arg(long, default_value_t = 0, value_name = "US")]
     window_us: u32,
@@ -55,14 +55,6 @@ pub(crate) struct Args {
     /// Print one JSON object
     #[arg(long)]
     json: bool,
-}
-
-#[derive(Clone, Copy, ValueEnum)]
-enum CriterionArg {
-    /// The form that suffices to reject all crosstalk
-    Exact,
-    /// As printed, with an outer absolute value
-    Paper,
 }
 
 /// Parses a layout by its name, or by its pairs of neighbours.
@@ -96,10 +88,7 @@ impl Args {
 
 pub(crate) fn run(args: &Args) -> Result<Answer, InputError> {
     let schedule = read_schedule(&args.file)?;
-    let criterion = match args.criterion {
-        CriterionArg::Exact => Criterion::Exact,
-        CriterionArg::Paper => Criterion::Paper,
-    };
+    let criterion = args.criterion.into();
     if let Some(file) = &args.ring {
         let spec = ring_of(file, schedule.sensors())?;
         // Where t_delta must cover motion, it must do so at the longest time between two firings.

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use clap::ValueEnum;
 use eeruf_core::search::WaitProblem;
 use eeruf_core::{Criterion, Micros};
 use eeruf_design::{LayoutKey, OwnedLayout, four, neighbours_in_range, sensors_in_range};
@@ -31,12 +32,24 @@ pub(crate) struct WaitFile {
     criterion: CriterionKey,
 }
 
-#[derive(Clone, Copy, Debug, Default, Deserialize)]
+/// Reading of (13a), (13b), as files and options name it.
+#[derive(Clone, Copy, Debug, Default, Deserialize, ValueEnum)]
 #[serde(rename_all = "lowercase")]
-enum CriterionKey {
+pub(crate) enum CriterionKey {
+    /// The form that suffices to reject all crosstalk
+    Exact,
+    /// As printed, with an outer absolute value
     #[default]
     Paper,
-    Exact,
+}
+
+impl From<CriterionKey> for Criterion {
+    fn from(key: CriterionKey) -> Self {
+        match key {
+            CriterionKey::Paper => Self::Paper,
+            CriterionKey::Exact => Self::Exact,
+        }
+    }
 }
 
 /// Contents of a file for `eeruf lab search`.
@@ -71,10 +84,7 @@ impl WaitSpec {
             min_interval: Micros::new(min_interval_us),
             neighbours,
             layout: self.layout.layout(),
-            criterion: match self.file.criterion {
-                CriterionKey::Paper => Criterion::Paper,
-                CriterionKey::Exact => Criterion::Exact,
-            },
+            criterion: self.file.criterion.into(),
         }
     }
 }

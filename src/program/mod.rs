@@ -49,6 +49,12 @@ pub(crate) struct Program {
     pub(crate) next: &'static str,
 }
 
+impl Program {
+    fn new<N: Into<String>>(files: impl IntoIterator<Item = (N, String)>, next: &'static str) -> Self {
+        Self { files: files.into_iter().map(|(name, text)| (name.into(), text)).collect(), next }
+    }
+}
+
 /// A ring and its way of firing.
 pub(crate) struct Wanted<'a> {
     /// The ring file's name and text.
@@ -211,8 +217,8 @@ fn comments(lines: &[String], sign: &str) -> String {
 }
 
 /// Fills in the placeholders of a template, such as `@sensors@`.
-fn filled(template: &str, values: &[(&str, &str)]) -> String {
-    values.iter().fold(template.to_owned(), |text, (name, value)| text.replace(&format!("@{name}@"), value))
+fn filled(template: &str, values: &[(&str, impl AsRef<str>)]) -> String {
+    values.iter().fold(template.to_owned(), |text, (name, value)| text.replace(&format!("@{name}@"), value.as_ref()))
 }
 
 fn list(pins: &[u8]) -> String {
@@ -285,15 +291,12 @@ fn arduino(wanted: &Wanted<'_>, flow: Option<&FlowDesign>, about: &[String], boa
     let head = if wanted.mavlink { speaking(about, board, sends, receives) } else { printing(about, flow.is_some()) };
     let sketch = comments(&head, "//") + &filled(&template, &values);
     let tab = wanted.source(Form::Arduino, flow).replace("<EerufArduino.h>", "\"src/eeruf/EerufArduino.h\"");
-    let library = C_LIBRARY.into_iter().chain(ARDUINO_LIBRARY);
-    let mut files = vec![(format!("{}.ino", wanted.name), sketch), ("ring.h".to_owned(), tab)];
-    files.extend(
-        library
-            .chain(wanted.mavlink.then_some(MAVLINK))
-            .map(|(name, text)| (format!("src/eeruf/{name}"), text.to_owned())),
-    );
-    files.extend(wanted.mavlink.then(|| (ARDUPILOT.0.to_owned(), ARDUPILOT.1.to_owned())));
-    Program { files, next: "open the sketch in the Arduino IDE and upload it; its first lines say how to wire" }
+    let library = C_LIBRARY.into_iter().chain(ARDUINO_LIBRARY).chain(wanted.mavlink.then_some(MAVLINK));
+    let library = library.map(|(name, text)| (format!("src/eeruf/{name}"), text.to_owned()));
+    let own = [(format!("{}.ino", wanted.name), sketch), ("ring.h".to_owned(), tab)].into_iter();
+    let parameters = wanted.mavlink.then(|| (ARDUPILOT.0.to_owned(), ARDUPILOT.1.to_owned()));
+    let next = "open the sketch in the Arduino IDE and upload it; its first lines say how to wire";
+    Program::new(own.chain(library).chain(parameters), next)
 }
 
 /// The numbers of the modules, which rest for this time, by their names in templates.
@@ -351,14 +354,10 @@ fn micropython(
         ("triggers", format!("[{}]", list(&wiring.triggers))),
         ("echoes", format!("[{}]", list(&wiring.echoes))),
     ]);
-    let values: Vec<_> = values.iter().map(|(name, value)| (*name, &**value)).collect();
     let template = include_str!("templates/main.py").replace("import ACCEPTED,", &format!("import ACCEPTED, {votes},"));
     let main = comments(&printing(about, true), "#") + &filled(&template, &values);
-    let files = vec![
-        ("main.py".to_owned(), main),
-        ("eeruf.py".to_owned(), include_str!("../../c/micropython/eeruf.py").to_owned()),
-    ];
-    Ok(Program { files, next: "copy both files to the board, as `mpremote cp main.py eeruf.py :`, and reset it" })
+    let files = [("main.py", main), ("eeruf.py", include_str!("../../c/micropython/eeruf.py").to_owned())];
+    Ok(Program::new(files, "copy both files to the board, as `mpremote cp main.py eeruf.py :`, and reset it"))
 }
 
 fn c(wanted: &Wanted<'_>, flow: Option<&FlowDesign>, about: &[String]) -> Program {
@@ -379,10 +378,10 @@ fn c(wanted: &Wanted<'_>, flow: Option<&FlowDesign>, about: &[String]) -> Progra
     ];
     let library = C_LIBRARY.into_iter().chain([MAVLINK, ARDUPILOT].into_iter().filter(|_| wanted.mavlink));
     let files = files.into_iter().chain(library.map(|(name, text)| (name, text.to_owned())));
-    Program {
-        files: files.map(|(name, text)| (name.to_owned(), text)).collect(),
-        next: "compile the two .c files with yours, which has the three functions at the beginning of sonar.h",
-    }
+    Program::new(
+        files,
+        "compile the two .c files with yours, which has the three functions at the beginning of sonar.h",
+    )
 }
 
 fn rust(wanted: &Wanted<'_>, flow: Option<&FlowDesign>, times: PulseTimes, about: &[String]) -> Program {
@@ -405,17 +404,14 @@ fn rust(wanted: &Wanted<'_>, flow: Option<&FlowDesign>, times: PulseTimes, about
     };
     let mut values = of_modules(spec, times, rest);
     values.extend([("ring", ring.to_owned()), ("begin", begin.to_owned())]);
-    let values: Vec<_> = values.iter().map(|(name, value)| (*name, &**value)).collect();
     let lib = lines_of(include_str!("templates/lib.rs"), flow.is_some(), false);
     let files = [
         ("Cargo.toml", filled(include_str!("templates/Cargo.toml.in"), &[("name", wanted.name)])),
         ("src/lib.rs", comments(about, "//!") + &filled(&lib, &values)),
         ("src/ring.rs", "//! The settings of the ring, as `eeruf design` found them.\n\n".to_owned() + &source),
     ];
-    Program {
-        files: files.into_iter().map(|(name, text)| (name.to_owned(), text)).collect(),
-        next: "name your clone in its Cargo.toml; depend on it from your firmware, and call `sonar` with its pins",
-    }
+    let next = "name your clone in its Cargo.toml; depend on it from your firmware, and call `sonar` with its pins";
+    Program::new(files, next)
 }
 
 fn ros2(wanted: &Wanted<'_>, about: &[String], wiring: &Wiring) -> Result<Program, String> {
@@ -428,9 +424,9 @@ fn ros2(wanted: &Wanted<'_>, about: &[String], wiring: &Wiring) -> Result<Progra
     let is_assumed = spec.places.poses.is_empty() && matches!(spec.layout.layout(), Layout::Ring(_));
     let spacing_deg = 360.0 / spec.sensors as f64;
     let places = format!("# Assumed: measure your own.\nspacing_deg = {spacing_deg}\nradius_m = 0.2\n\n");
-    let files = vec![
-        ("eeruf.yaml".to_owned(), comments(about, "#") + &filled(include_str!("templates/eeruf.yaml"), &values)),
-        ("ring.toml".to_owned(), if is_assumed { places } else { String::new() } + wanted.file.1),
+    let files = [
+        ("eeruf.yaml", comments(about, "#") + &filled(include_str!("templates/eeruf.yaml"), &values)),
+        ("ring.toml", if is_assumed { places } else { String::new() } + wanted.file.1),
     ];
-    Ok(Program { files, next: "in its folder: `ros2 launch eeruf_ros2 eeruf.launch.py params_file:=$PWD/eeruf.yaml`" })
+    Ok(Program::new(files, "in its folder: `ros2 launch eeruf_ros2 eeruf.launch.py params_file:=$PWD/eeruf.yaml`"))
 }

@@ -42,6 +42,13 @@ pub(crate) fn median_95(spread: Option<Spread>, digits: usize) -> String {
     })
 }
 
+/// Formats the mean with its 95 % interval.
+pub(crate) fn mean_95(spread: Option<Spread>, scale: f64, digits: usize) -> String {
+    or_dash(spread, |Spread { mean, mean_95: [low, high], .. }| {
+        format!("{:.digits$} ({:.digits$}-{:.digits$})", scale * mean, scale * low, scale * high)
+    })
+}
+
 /// Formats the median.
 pub(crate) fn median(spread: Option<Spread>, digits: usize) -> String {
     or_dash(spread, |spread| format!("{:.digits$}", spread.median))

@@ -15,7 +15,7 @@ pub(crate) struct Column {
 }
 
 /// Output of `--json`.
-#[derive(Default, Serialize)]
+#[derive(Serialize)]
 pub(crate) struct Replay {
     pub(crate) total: Counts,
     pub(crate) sensors: Vec<Counts>,
@@ -41,7 +41,7 @@ pub(crate) struct Firing {
 }
 
 /// Number of readings of each kind.
-#[derive(Clone, Default, Serialize)]
+#[derive(Serialize)]
 pub(crate) struct Counts {
     #[serde(skip_serializing_if = "Option::is_none")]
     name: Option<String>,
@@ -75,10 +75,13 @@ fn is_zero(count: &u64) -> bool {
 }
 
 impl Counts {
-    pub(crate) fn of(name: &str, counted: &Counted) -> Self {
-        let of = |kind| counted.tally.of(kind).into();
+    /// Sums up sensors' readings: of one sensor under its name, or of all.
+    pub(crate) fn of(name: Option<&str>, sensors: &[Counted]) -> Self {
+        let of = |kind| sensors.iter().map(|counted| u64::from(counted.tally.of(kind))).sum::<u64>();
+        let sum = |count: fn(&Counted) -> u64| sensors.iter().map(count).sum();
+        let between_ns = name.and(sensors.first()).and_then(|counted| counted.between_ns);
         Self {
-            name: Some(name.to_owned()),
+            name: name.map(str::to_owned),
             accepted: of(ReadingKind::Accepted),
             rejected: of(ReadingKind::Rejected) + of(ReadingKind::Ambiguous),
             repeated: of(ReadingKind::Repeated),
@@ -86,27 +89,10 @@ impl Counts {
             no_echo: of(ReadingKind::NoEcho),
             clear: of(ReadingKind::Clear),
             too_early: of(ReadingKind::TooEarly),
-            invalid: counted.invalid,
-            backwards: counted.backwards,
-            gaps: counted.gaps,
-            duration_s: counted.between_ns.map(|(from, to)| (to - from) as f64 * 1e-9),
-        }
-    }
-
-    pub(crate) fn plus(self, other: &Self) -> Self {
-        Self {
-            name: None,
-            accepted: self.accepted + other.accepted,
-            rejected: self.rejected + other.rejected,
-            repeated: self.repeated + other.repeated,
-            first: self.first + other.first,
-            no_echo: self.no_echo + other.no_echo,
-            clear: self.clear + other.clear,
-            too_early: self.too_early + other.too_early,
-            invalid: self.invalid + other.invalid,
-            backwards: self.backwards + other.backwards,
-            gaps: self.gaps + other.gaps,
-            duration_s: None,
+            invalid: sum(|counted| counted.invalid),
+            backwards: sum(|counted| counted.backwards),
+            gaps: sum(|counted| counted.gaps),
+            duration_s: between_ns.map(|(from, to)| (to - from) as f64 * 1e-9),
         }
     }
 

@@ -14,6 +14,18 @@ pub(crate) fn markdown<S: AsRef<str>>(header: &[S], rows: impl IntoIterator<Item
     table
 }
 
+/// A column: its header, and its cell in a row.
+pub(crate) type Column<R> = (&'static str, fn(&R) -> String);
+
+/// Formats a row for each name: columns that only need the name, then those of its figures.
+pub(crate) fn by_name<R>(named: &[Column<str>], columns: &[Column<R>], rows: &[(String, R)]) -> Table {
+    let headers = named.iter().map(|(header, _)| *header).chain(columns.iter().map(|(header, _)| *header));
+    let cells = |(name, row): &(String, R)| {
+        named.iter().map(|(_, cell)| cell(name)).chain(columns.iter().map(|(_, cell)| cell(row))).collect()
+    };
+    markdown(&headers.collect::<Vec<_>>(), rows.iter().map(cells))
+}
+
 /// A table without lines.
 pub(crate) fn plain() -> Table {
     let mut table = Table::new();

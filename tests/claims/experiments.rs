@@ -119,7 +119,7 @@ fn merge_refuses_parts_that_do_not_belong_together() {
         let outcome = eeruf(&[&["merge"], files].concat());
         assert!(outcome.code == Some(2) && outcome.err.contains(says), "{}", outcome.err);
     };
-    refused(&[&first, &other], "expected one of `set-three --seeds 2 --first 20000");
+    refused(&[&first, &other], "expected one of `set-three --first 20000 --gain constant");
     refused(&[&first, &third], "part 2/3; expected one of 2 as");
     refused(&[folder.path().join("none").to_str().unwrap()], "none");
     for (name, cut) in

@@ -66,11 +66,6 @@ def test_set_two_is_the_programs(words: list[str], arguments: dict[str, Any]) ->
     assert found == printed
 
 
-def test_a_sweep_of_speeds_is_the_programs() -> None:
-    printed = program("experiment", "set-two", "--sweep", "--seeds", "1", "--method", "eeruf,comparison")
-    assert eeruf.experiments.speed_sweep(seeds=1, methods=["comparison", "eeruf"]).to_dict() == printed
-
-
 @pytest.mark.parametrize("atlas", [True, False])
 @pytest.mark.parametrize("ring", ["paper-12", "ring-24"])
 def test_a_design_is_the_programs(ring: str, atlas: bool) -> None:

@@ -1,8 +1,10 @@
 //! Arguments and progress of all sets.
 
+use std::collections::BTreeSet;
 use std::fmt;
 use std::path::PathBuf;
 
+use clap::{ArgMatches, FromArgMatches, Id};
 use eeruf_core::search::Progress;
 use eeruf_sim::experiments::{ExperimentError, FIRST};
 use eeruf_sim::{Entry, GainProfile, Physics, Room};
@@ -18,9 +20,51 @@ use crate::report::watch::Watch;
 /// Budget of nodes for the search for `eeruf_best`; the proof takes far fewer.
 pub(crate) const BUDGET: u64 = 300_000;
 
+/// The words that decide what is run, also those that nobody typed: each option with its value, in alphabetical order.
+pub(super) struct Words(Vec<String>);
+
+/// Options of the output, which decide nothing.
+const OF_OUTPUT: [&str; 6] = ["shard", "color", "quiet", "wide", "explain", "deny_warnings"];
+
+impl FromArgMatches for Words {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        // Groups of options have names like types.
+        let is_option = |id: &&str| id.starts_with(|c: char| c.is_ascii_lowercase()) && !OF_OUTPUT.contains(id);
+        let options: BTreeSet<&str> = matches.ids().map(Id::as_str).filter(is_option).collect();
+        let words = options.into_iter().flat_map(|id| {
+            let values = matches.get_raw(id).into_iter().flatten().map(|value| value.to_string_lossy());
+            let (option, value) = (format!("--{}", id.replace('_', "-")), values.collect::<Vec<_>>().join(","));
+            match value.as_str() {
+                "true" => vec![option],
+                "false" => vec![],
+                _ => vec![option, value],
+            }
+        });
+        Ok(Self(words.collect()))
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+impl clap::Args for Words {
+    fn augment_args(command: clap::Command) -> clap::Command {
+        command
+    }
+
+    fn augment_args_for_update(command: clap::Command) -> clap::Command {
+        command
+    }
+}
+
 /// Arguments of both sets.
 #[derive(clap::Args)]
 pub(crate) struct Common {
+    /// The first field, since reading an option takes it away.
+    #[command(flatten)]
+    words: Words,
     /// Number of geometries, courses or placings; by default that of the paper
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..=100_000))]
     pub(crate) seeds: Option<u64>,
@@ -63,19 +107,6 @@ fn gain(name: &str) -> Result<GainProfile, String> {
 }
 
 impl Common {
-    /// Returns all arguments that decide what is run; `seeds` is the default number of seeds.
-    pub(super) fn words(&self, seeds: u64) -> Vec<String> {
-        let Self { first, physics, height, gain, .. } = self;
-        let height = match height {
-            Height::Flat => "flat",
-            Height::Room => "room",
-        };
-        let seeds = self.seeds.unwrap_or(seeds);
-        let words =
-            format!("--seeds {seeds} --first {first} --physics {physics} --height {height} --gain {}", gain.name());
-        words.split(' ').map(str::to_owned).collect()
-    }
-
     /// Floor and ceiling, if rings hear them.
     pub(crate) fn room(&self) -> Option<Room> {
         matches!(self.height, Height::Room).then_some(Room::DEFAULT)
@@ -129,7 +160,6 @@ impl Common {
     pub(crate) fn in_blocks<R: Serialize>(
         &self,
         (set, of): (&'static str, &str),
-        words: impl FnOnce() -> Vec<String>,
         methods: &[Entry],
         (mut first, mut seeds): (u64, u64),
         run: impl Fn(u64, u64, Watched<'_>) -> Result<Vec<Vec<R>>, ExperimentError>,
@@ -141,7 +171,8 @@ impl Common {
         let watched = watched(format!("{seeds} {of} by {} methods", methods.len()));
         if let Some(shard) = self.shard {
             let runs = run(first, seeds, &watched).map_err(|error| bad(&error))?;
-            return Part::print(shard, words(), methods, &runs).map(|()| None);
+            let words = [&[set.to_owned()], &self.words.0[..]].concat();
+            return Part::print(shard, words, methods, &runs).map(|()| None);
         }
         // Enough work for all cores, and little to lose by Ctrl-C.
         let block = 4 * std::thread::available_parallelism().map_or(1, |cores| cores.get() as u64);

@@ -25,7 +25,7 @@ pub(crate) struct Args {
     common: Common,
     /// Simulate only these methods, separated by commas; by default simultaneous, sequential, sequential_votes, dither,
     /// eeruf and flow
-    #[arg(long = "method", value_name = "NAME,..", value_delimiter = ',')]
+    #[arg(id = "method", long, value_name = "NAME,..", value_delimiter = ',')]
     methods: Vec<Entry>,
     /// Number of periods for which each placing is simulated
     #[arg(long, value_name = "N", default_value_t = SetThreeOptions::default().periods)]
@@ -41,7 +41,7 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
         Ok(set_three(&SetThreeOptions { first, seeds, ..options.clone() }, watched)?.runs)
     };
     let seeds = (options.first, options.seeds);
-    let ran = args.common.in_blocks(("set-three", "placings"), || words(args), &options.methods, seeds, block)?;
+    let ran = args.common.in_blocks(("set-three", "placings"), &options.methods, seeds, block)?;
     let Some((seeds, runs)) = ran else { return Ok(()) };
     print(args, &SetThree::of(&SetThreeOptions { seeds, ..options }, runs))
 }
@@ -67,15 +67,6 @@ fn options(args: &Args) -> SetThreeOptions {
         options.methods.clone_from(&args.methods);
     }
     options
-}
-
-/// Returns the arguments that decide what is run.
-fn words(args: &Args) -> Vec<String> {
-    let mut words = args.common.words(SEEDS);
-    words.insert(0, "set-three".to_owned());
-    let methods: Vec<_> = options(args).methods.iter().map(Entry::to_string).collect();
-    words.extend(["--method".to_owned(), methods.join(","), "--periods".to_owned(), args.periods.to_string()]);
-    words
 }
 
 fn print(args: &Args, found: &SetThree) -> Result<(), InputError> {

@@ -2,12 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::ValueEnum;
 use eeruf_core::Micros;
 use eeruf_sim::LabMate;
 use eeruf_sim::best_schedule_for;
 use eeruf_sim::experiments::set_two::{
-    Course, OdometryNoise, Pilots, SECOND_AHEAD, SECOND_BEHIND, SetTwo, SetTwoOptions, drive, set_two, speed_sweep,
+    Course, OdometryNoise, Pilots, SECOND_AHEAD, SECOND_BEHIND, SetTwo, SetTwoOptions, drive, set_two,
 };
 use eeruf_sim::{Entry, Method, Point, Robot};
 
@@ -18,7 +17,7 @@ use crate::commands::show;
 use crate::files::error::InputError;
 use crate::files::mcap::{Stage, write_mcap};
 use crate::report::draw;
-use crate::report::experiment::set_two::{SideBySide, Sweep, describe};
+use crate::report::experiment::set_two::{describe, describe_pilots};
 use crate::report::watch::{Watch, was_stopped};
 
 /// Set II: a LabMate drives through a course of 8 mm poles, about 1.6 m apart, steered by what its eight sensors
@@ -32,12 +31,12 @@ pub(crate) struct Args {
     common: Common,
     /// Drive by these methods only, separated by commas; by default sequential, far_groups, conventional, comparison,
     /// eeruf, eeruf_best, adaptive, flow and multi_echo
-    #[arg(long = "method", value_name = "NAME,..", value_delimiter = ',')]
+    #[arg(id = "method", long, value_name = "NAME,..", value_delimiter = ',')]
     methods: Vec<Method>,
     /// Pilots: each method's own, found by the same search for each; one shared by all, found earlier by
     /// the score of eeruf; or the published settings, with and without the growth rate operator. Several are printed
     /// side by side
-    #[arg(long = "pilot", value_name = "PILOT,..", value_delimiter = ',', default_value = "own")]
+    #[arg(id = "pilot", long, value_name = "PILOT,..", value_delimiter = ',', default_value = "own")]
     pilots: Vec<Pilots>,
     /// Let another robot with 24 sensors fire 24 times in 80 ms in a corner of the lab: behind the start, or ahead,
     /// where all sensors face it; by default there is none
@@ -57,11 +56,8 @@ pub(crate) struct Args {
     /// an obstacle to sound and to the platform. The pilots were tuned without
     #[arg(long)]
     bodies: bool,
-    /// Drive all courses at several top speeds instead, and give the highest that each method sustains
-    #[arg(long, conflicts_with_all = ["speed", "shard"])]
-    sweep: bool,
     /// Drive the first course alone, by one --method, and write its readings as MCAP, for Foxglove and Rerun
-    #[arg(long, value_name = "FILE.mcap", conflicts_with_all = ["sweep", "svg", "png", "json", "shard"])]
+    #[arg(long, value_name = "FILE.mcap", conflicts_with_all = ["svg", "png", "json", "shard"])]
     mcap: Option<PathBuf>,
 }
 
@@ -83,8 +79,6 @@ impl Corner {
 const SEEDS: u64 = 100;
 /// `T_delta` that suffices for a robot at 1 m/s: 2 v dt / c is at most 0.434 ms.
 const PAPERS_T_DELTA: Micros = Micros::new(500);
-/// The top speeds of a sweep, in m/s.
-const SPEEDS: [f64; 7] = [0.5, 0.75, 1.0, 1.25, 1.5, 1.75, 2.0];
 
 fn speed(text: &str) -> Result<f64, String> {
     match text.parse() {
@@ -106,21 +100,10 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
         let driven = drive(&options, entry, options.first, &watched).map_err(|error| bad(&error))?;
         return write_mcap(file, &Stage::driven(&driven.world, &driven.run.track), &[driven.readings]);
     }
-    let takes_one = |of: &str| match pilots {
-        [_] => Ok(()),
-        _ => Err(bad(&format!("{} pilots; {of} takes one", pilots.len()))),
-    };
-    if args.sweep {
-        takes_one("--sweep")?;
-        let options = SetTwoOptions { pilots: pilots[0], ..options };
-        let what = format!("{} courses by {} methods", options.seeds, options.methods.len());
-        let steps = speed_sweep(&options, &SPEEDS, &watched(what)).map_err(|error| bad(&error))?;
-        let sweep = Sweep::of(&options, steps);
-        return Ok(show(args.common.json, || &sweep, || sweep.describe())?);
-    }
     let is_part = args.common.shard.is_some();
-    if is_part || args.common.draws_one() {
-        takes_one(if is_part { "--shard" } else { "a file for --svg or --png" })?;
+    if pilots.len() > 1 && (is_part || args.common.draws_one()) {
+        let of = if is_part { "--shard" } else { "a file for --svg or --png" };
+        return Err(bad(&format!("{} pilots; {of} takes one", pilots.len())));
     }
     let mut each = Vec::new();
     for &pilots in pilots {
@@ -134,7 +117,7 @@ pub(crate) fn run(args: &Args) -> Result<(), InputError> {
             Ok(runs)
         };
         let seeds = (options.first, options.seeds);
-        let ran = args.common.in_blocks(("set-two", "courses"), || words(args), &options.methods, seeds, block)?;
+        let ran = args.common.in_blocks(("set-two", "courses"), &options.methods, seeds, block)?;
         let Some((seeds, runs)) = ran else { return Ok(()) };
         let found = SetTwo::of(&SetTwoOptions { seeds, ..options }, runs);
         args.common.draw(&picture_name(args.second_robot, pilots), || draw::courses(&found))?;
@@ -181,41 +164,19 @@ fn options(args: &Args) -> Result<SetTwoOptions, InputError> {
     Ok(options)
 }
 
-/// Returns the arguments that decide what is run.
-fn words(args: &Args) -> Vec<String> {
-    let mut words = args.common.words(SEEDS);
-    words.insert(0, "set-two".to_owned());
-    let pilots: Vec<_> = args.pilots.iter().map(Pilots::to_string).collect();
-    let mut add = |option: &str, value: String| words.extend([option.to_owned(), value]);
-    if !args.methods.is_empty() {
-        let methods: Vec<_> = chosen(&args.methods, false).iter().map(Method::to_string).collect();
-        add("--method", methods.join(","));
-    }
-    add("--pilot", pilots.join(","));
-    add("--speed", args.speed.to_string());
-    if let Some(corner) = args.second_robot.and_then(|corner| corner.to_possible_value()) {
-        add("--second-robot", corner.get_name().to_owned());
-    }
-    let flags =
-        [("--no-odometry", args.no_odometry), ("--exact-odometry", args.exact_odometry), ("--bodies", args.bodies)];
-    words.extend(flags.into_iter().filter(|(_, given)| *given).map(|(flag, _)| flag.to_owned()));
-    words
-}
-
 fn print(args: &Args, each: &[SetTwo]) -> Result<(), InputError> {
     match each {
         [found] => show(args.common.json, || found, || describe(found))?,
-        _ => show(args.common.json, || SideBySide::of(each), || SideBySide::of(each).describe())?,
+        _ => show(args.common.json, || each, || describe_pilots(each))?,
     }
     Ok(())
 }
 
 fn picture_name(second_robot: Option<Corner>, pilots: Pilots) -> String {
-    let corner = match second_robot {
-        None => "",
-        Some(Corner::Behind) => "-second-behind",
-        Some(Corner::Ahead) => "-second-ahead",
-    };
+    let corner = second_robot.map_or("", |corner| match corner {
+        Corner::Behind => "-second-behind",
+        Corner::Ahead => "-second-ahead",
+    });
     let pilot = if pilots == Pilots::Own { String::new() } else { format!("-{pilots}") };
     format!("set-two{corner}{pilot}")
 }

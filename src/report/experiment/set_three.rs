@@ -5,11 +5,29 @@ use std::fmt::Write as _;
 use eeruf_sim::experiments::Spread;
 use eeruf_sim::experiments::set_three::{Arrangement, Brief, Figures, Group, PERIOD, SetThree, Site};
 
-use crate::report::percent::{fine_percent, median};
-use crate::report::table::{markdown, or_dash};
+use crate::report::percent::{fine_percent, mean_95, median};
+use crate::report::table::{Column, by_name, markdown, or_dash};
 
 /// The largest number of methods in one table.
 const WIDEST: usize = 8;
+
+const ACCEPTED: [Column<Figures>; 7] = [
+    ("others, % of accepted", |of| with_interval(of.others_of_accepted)),
+    ("90 %", |of| or_dash(of.others_of_accepted, |spread| fine_percent(spread.p90))),
+    ("worst sensor", |of| with_interval(of.others_at_worst)),
+    ("foreign, % of accepted", |of| with_interval(of.foreign_of_accepted)),
+    ("good lost %", |of| with_interval(of.good_lost)),
+    ("right echoes/s", |of| mean_95(of.right_echoes_per_s, 1.0, 1)),
+    ("blind", |of| mean_95(of.blind, 1.0, 2)),
+];
+
+const BELIEF: [Column<Figures>; 5] = [
+    ("right", |of| with_interval(of.belief_right)),
+    ("unknown", |of| with_interval(of.unknown)),
+    ("phantom", |of| with_interval(of.phantom)),
+    ("too far", |of| with_interval(of.too_far)),
+    ("faint", |of| with_interval(of.faint)),
+];
 
 pub(crate) fn describe(found: &SetThree) -> String {
     let mut text = format!(
@@ -20,19 +38,8 @@ pub(crate) fn describe(found: &SetThree) -> String {
          than 0.6 s ago. Echoes and blind sensors are those of one robot with twelve (means).\n\n",
         found.seeds, found.first, found.periods, PERIOD, found.physics, found.conditions,
     );
-    let header = [
-        "method",
-        "others, % of accepted",
-        "90 %",
-        "worst sensor",
-        "foreign, % of accepted",
-        "good lost %",
-        "right echoes/s",
-        "blind",
-    ];
-    _ = writeln!(text, "{}", markdown(&header, found.methods.iter().map(|(way, figures)| accepted(way, figures))));
-    let header = ["% of the time", "right", "unknown", "phantom", "too far", "faint"];
-    _ = writeln!(text, "\n{}", markdown(&header, found.methods.iter().map(|(way, figures)| belief(way, figures))));
+    _ = writeln!(text, "{}", by_name(&[("method", str::to_owned)], &ACCEPTED, &found.methods));
+    _ = writeln!(text, "\n{}", by_name(&[("% of the time", str::to_owned)], &BELIEF, &found.methods));
     // Many methods are split over several tables of about the same width.
     let methods = found.methods.len().max(1);
     let columns = methods.div_ceil(methods.div_ceil(WIDEST));
@@ -49,31 +56,6 @@ fn with_interval(spread: Option<Spread>) -> String {
     or_dash(spread, |Spread { median, median_95: [low, high], .. }| {
         format!("{} ({}-{})", fine_percent(median), fine_percent(low), fine_percent(high))
     })
-}
-
-fn mean_95(spread: Option<Spread>, digits: usize) -> String {
-    or_dash(spread, |Spread { mean, mean_95: [low, high], .. }| {
-        format!("{mean:.digits$} ({low:.digits$}-{high:.digits$})")
-    })
-}
-
-fn accepted(way: &str, figures: &Figures) -> Vec<String> {
-    let p90 = or_dash(figures.others_of_accepted, |spread| fine_percent(spread.p90));
-    vec![
-        way.to_string(),
-        with_interval(figures.others_of_accepted),
-        p90,
-        with_interval(figures.others_at_worst),
-        with_interval(figures.foreign_of_accepted),
-        with_interval(figures.good_lost),
-        mean_95(figures.right_echoes_per_s, 1),
-        mean_95(figures.blind, 2),
-    ]
-}
-
-fn belief(way: &str, figures: &Figures) -> Vec<String> {
-    let shares = [figures.belief_right, figures.unknown, figures.phantom, figures.too_far, figures.faint];
-    [way.to_string()].into_iter().chain(shares.map(with_interval)).collect()
 }
 
 fn group<'g>(group: &'g Group, methods: impl Iterator<Item = &'g (String, Brief)>) -> Vec<String> {

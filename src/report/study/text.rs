@@ -3,13 +3,12 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use comfy_table::Table;
 use eeruf_sim::{Readings, Summary, World};
 
 use super::fooled::Fooled;
 use super::found::{Study, TOLERANCE_US, of_robot};
 use crate::report::percent::fine_percent;
-use crate::report::table::{counted, markdown};
+use crate::report::table::{Column, by_name, counted, or_dash};
 
 pub(crate) fn describe(file: &Path, world: &World, study: &Study) -> String {
     let scene = world.scene();
@@ -51,46 +50,38 @@ pub(crate) fn describe(file: &Path, world: &World, study: &Study) -> String {
     text
 }
 
-/// Three tables, each narrow enough for a page: readings, their rate and age, and belief.
-fn tables(runs: &[Readings]) -> String {
-    let summaries: Vec<Summary> = runs.iter().map(Readings::summary).collect();
-    let share = |share: Option<f64>| share.map_or_else(|| "-".to_owned(), fine_percent);
-    let count = |count: usize| if count == 0 { "-".to_owned() } else { count.to_string() };
-    let readings = |of: &Summary| {
-        [fine_percent(of.wrong_of_all), share(of.wrong_of_accepted), fine_percent(of.rejected), share(of.good_lost)]
-    };
-    let rates = |of: &Summary| {
-        [
-            format!("{:.0}", of.age_ms.median),
-            format!("{:.0}", of.age_ms.p99),
-            format!("{:.1}", of.readings_per_s),
-            format!("{:.1}", of.right_echoes_per_s),
-            count(of.starved),
-            count(of.blind),
-        ]
-    };
-    let belief = |of: &Summary| {
-        let shares = &of.belief;
-        [shares.right, shares.unknown, shares.phantom, shares.too_far, shares.faint].map(fine_percent)
-    };
-    [
-        table(&summaries, ["method", "wrong, % of all", "% of accepted", "rejected %", "good lost %"], readings),
-        table(
-            &summaries,
-            ["method", "age ms, median", "99 %", "accepted/s", "right echoes/s", "starved", "blind"],
-            rates,
-        ),
-        table(&summaries, ["method", "belief right %", "unknown", "phantom", "too far", "faint"], belief),
-    ]
-    .map(|table| format!("\n{table}\n"))
-    .concat()
+const READINGS: [Column<Summary>; 4] = [
+    ("wrong, % of all", |of| fine_percent(of.wrong_of_all)),
+    ("% of accepted", |of| or_dash(of.wrong_of_accepted, fine_percent)),
+    ("rejected %", |of| fine_percent(of.rejected)),
+    ("good lost %", |of| or_dash(of.good_lost, fine_percent)),
+];
+
+const RATES: [Column<Summary>; 6] = [
+    ("age ms, median", |of| format!("{:.0}", of.age_ms.median)),
+    ("99 %", |of| format!("{:.0}", of.age_ms.p99)),
+    ("accepted/s", |of| format!("{:.1}", of.readings_per_s)),
+    ("right echoes/s", |of| format!("{:.1}", of.right_echoes_per_s)),
+    ("starved", |of| count(of.starved)),
+    ("blind", |of| count(of.blind)),
+];
+
+const BELIEF: [Column<Summary>; 5] = [
+    ("belief right %", |of| fine_percent(of.belief.right)),
+    ("unknown", |of| fine_percent(of.belief.unknown)),
+    ("phantom", |of| fine_percent(of.belief.phantom)),
+    ("too far", |of| fine_percent(of.belief.too_far)),
+    ("faint", |of| fine_percent(of.belief.faint)),
+];
+
+fn count(count: usize) -> String {
+    or_dash((count > 0).then_some(count), |count| count.to_string())
 }
 
-fn table<const H: usize, const N: usize>(
-    summaries: &[Summary],
-    header: [&str; H],
-    cells: impl Fn(&Summary) -> [String; N],
-) -> Table {
-    let row = |summary: &Summary| core::iter::once(summary.method.to_string()).chain(cells(summary)).collect();
-    markdown(&header, summaries.iter().map(row))
+/// Three tables, each narrow enough for a page: readings, their rate and age, and belief.
+fn tables(runs: &[Readings]) -> String {
+    let named = |run: &Readings| (run.method.to_string(), run.summary());
+    let summaries: Vec<(String, Summary)> = runs.iter().map(named).collect();
+    let table = |columns: &[_]| format!("\n{}\n", by_name(&[("method", str::to_owned)], columns, &summaries));
+    [table(&READINGS), table(&RATES), table(&BELIEF)].concat()
 }

@@ -41,7 +41,7 @@ const OTHERS: &str = "\
     vbat vcc watt percent soc enc encoders tick \
     ticks tof sharp acceleration accelerometer gyroscope mag magnetometer imu gps sat ax ay az gx gy gz mx my mz \
     vx vy vz q servo cmd linear angular valid ok enabled bump bumper touch contact estop hz fps deg degc lux feed \
-    stat orient elevation adc analog analogue ttl";
+    stat orient elevation adc analog analogue ttl changes expected sends";
 
 /// Words for directions and places of sensors, in several languages.
 const PLACES: &str = "\
@@ -130,12 +130,7 @@ fn meaning_of(name: &str) -> Meaning {
     }
     // The distance now, beside its limits.
     let is_distance_now = has(RANGES) && has("current");
-    if has(OTHERS) && !is_distance_now
-        || is_in(LIMITS, &whole)
-        || whole == "changes"
-        || whole == "expected_us"
-        || whole == "sends"
-    {
+    if has(OTHERS) && !is_distance_now || is_in(LIMITS, &whole) {
         return Meaning::Other;
     }
     if is_in(SENSORS, &whole) || has("frame") && has("id") {

@@ -98,6 +98,7 @@ pub struct Suspect {
 /// assert_eq!(found.verdict, LogVerdict::NoneSeen, "{:?}", found.reasons);
 /// # Ok::<(), eeruf_files::FileError>(())
 /// ```
+#[derive(Default)]
 pub struct Doctor {
     speed_of_sound: f64,
     first_ns: Option<u64>,
@@ -115,16 +116,7 @@ pub struct Doctor {
 impl Doctor {
     /// A doctor without readings; the speed of sound in m/s converts ranges to echo times.
     pub fn new(speed_of_sound: f64) -> Self {
-        Self {
-            speed_of_sound,
-            first_ns: None,
-            sensors: vec![],
-            rows: vec![],
-            row_at_us: vec![],
-            left_out: 0,
-            names: vec![],
-            scatter: vec![],
-        }
+        Self { speed_of_sound, ..Self::default() }
     }
 
     /// Adds a reading. The first 262,144 are kept.

@@ -59,37 +59,9 @@ pub struct Judging {
 struct Judged {
     filter: EchoFilter<1>,
     counted: Counted,
-    clock: Clock,
-}
-
-/// The times of one sensor, for finding gaps and steps back.
-#[derive(Default)]
-struct Clock {
     latest_ns: Option<u64>,
     /// A running mean of the interval between two readings.
     usual_ns: Option<f64>,
-}
-
-impl Clock {
-    /// Returns true if a reading at this time must not be compared with the previous one.
-    fn breaks(&mut self, at_ns: u64) -> bool {
-        /// Least length of a gap: in nanoseconds, and in usual intervals.
-        const SHORTEST_GAP_NS: f64 = 1e9;
-        const TIMES_USUAL: f64 = 5.0;
-        /// Least length of a gap before a usual interval is known.
-        const FIRST_GAP_NS: f64 = 1e10;
-        let Some(before) = self.latest_ns.replace(at_ns) else { return false };
-        if at_ns < before {
-            return true;
-        }
-        let pause = (at_ns - before) as f64;
-        let longest = self.usual_ns.map_or(FIRST_GAP_NS, |usual| SHORTEST_GAP_NS.max(TIMES_USUAL * usual));
-        if pause > longest {
-            return true;
-        }
-        self.usual_ns = Some(self.usual_ns.map_or(pause, |usual| usual + (pause - usual) / 8.0));
-        false
-    }
 }
 
 impl Judging {
@@ -118,7 +90,7 @@ impl Judging {
     pub fn push(&mut self, sensors: &[Sensor], reading: &LogReading) -> Result<Option<ReadingKind>, FileError> {
         while self.sensors.len() <= reading.sensor {
             let (filter, counted) = (self.fresh.clone(), Counted::default());
-            self.sensors.push(Judged { filter, counted, clock: Clock::default() });
+            self.sensors.push(Judged { filter, counted, latest_ns: None, usual_ns: None });
         }
         let failed = |message: String| FileError::new(&self.log, message);
         let kind = self.sensors[reading.sensor].judge(reading, self.speed_of_sound).map_err(failed)?;
@@ -149,11 +121,8 @@ impl Judged {
     fn judge(&mut self, reading: &LogReading, speed_of_sound: f64) -> Result<Option<ReadingKind>, String> {
         // Each filter has one sensor, 0, so this never happens.
         let failed = |error: SensorError| error.to_string();
-        if let Some(at_ns) = reading.at_ns {
-            let broken = self.note_time(at_ns);
-            if broken {
-                self.filter.forget(0).map_err(failed)?;
-            }
+        if reading.at_ns.is_some_and(|at_ns| self.breaks(at_ns)) {
+            self.filter.forget(0).map_err(failed)?;
         }
         let pushed = |verdict: Result<Verdict, _>| verdict.map(|verdict| verdict.kind);
         let kind = match reading.echo() {
@@ -176,15 +145,27 @@ impl Judged {
         Ok(Some(kind))
     }
 
-    /// Returns true if the time breaks the comparison with the previous reading.
-    fn note_time(&mut self, at_ns: u64) -> bool {
+    /// Notes a time, and returns true if a reading then must not be compared with the previous one.
+    fn breaks(&mut self, at_ns: u64) -> bool {
+        /// Least length of a gap: in nanoseconds, and in usual intervals.
+        const SHORTEST_GAP_NS: f64 = 1e9;
+        const TIMES_USUAL: f64 = 5.0;
+        /// Least length of a gap before a usual interval is known.
+        const FIRST_GAP_NS: f64 = 1e10;
         let (from, to) = self.counted.between_ns.unwrap_or((at_ns, at_ns));
         self.counted.between_ns = Some((from.min(at_ns), to.max(at_ns)));
-        let is_back = self.clock.latest_ns.is_some_and(|latest| at_ns < latest);
-        let breaks = self.clock.breaks(at_ns);
-        self.counted.backwards += u64::from(is_back);
-        self.counted.gaps += u64::from(breaks && !is_back);
-        breaks
+        let Some(before) = self.latest_ns.replace(at_ns) else { return false };
+        if at_ns < before {
+            self.counted.backwards += 1;
+            return true;
+        }
+        let pause = (at_ns - before) as f64;
+        if pause > self.usual_ns.map_or(FIRST_GAP_NS, |usual| SHORTEST_GAP_NS.max(TIMES_USUAL * usual)) {
+            self.counted.gaps += 1;
+            return true;
+        }
+        self.usual_ns = Some(self.usual_ns.map_or(pause, |usual| usual + (pause - usual) / 8.0));
+        false
     }
 }
 

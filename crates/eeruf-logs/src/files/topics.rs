@@ -11,6 +11,7 @@ use crate::reading::Sensor;
 use crate::sink::{Guess, Sink, Skipped, finite};
 
 /// One topic of one file.
+#[derive(Default)]
 pub(crate) struct Topic {
     name: String,
     decoding: Option<Rc<(Encoding, Kind)>>,
@@ -45,23 +46,18 @@ impl Sink<'_> {
         encoding: Option<Encoding>,
     ) -> Topic {
         let kind = Kind::of(name, type_name, schema, self.options);
-        let mut skip = |why: String| {
+        let skip = |why: String| {
             let skipped = Skipped::new(name, why);
             if !self.report.skipped.contains(&skipped) {
                 self.report.skipped.push(skipped);
             }
         };
         let decoding = match (kind, encoding) {
-            (Ok(kind), Some(encoding)) => Some(Rc::new((encoding, kind))),
-            (Ok(_), None) => {
-                skip(format!("{type_name} in an encoding that is neither cdr nor ros1"));
-                None
-            }
-            (Err(why), _) => {
-                skip(why);
-                None
-            }
+            (Ok(kind), Some(encoding)) => Ok(Rc::new((encoding, kind))),
+            (Ok(_), None) => Err(format!("{type_name} in an encoding that is neither cdr nor ros1")),
+            (Err(why), _) => Err(why),
         };
+        let decoding = decoding.map_err(skip).ok();
         if decoding.is_some() {
             self.of_topics.names.insert(name.to_owned());
         }
@@ -69,19 +65,8 @@ impl Sink<'_> {
             self.options.topics.iter().chain(self.options.fields.iter().map(|field| &field.topic)).any(|t| t == name);
         let base = ["/accepted", "/confirmed"].iter().find_map(|end| name.strip_suffix(end));
         let judged = base.filter(|_| !self.options.judged && !is_asked).map(|base| (base.to_owned(), 0));
-        Topic {
-            name: name.to_owned(),
-            decoding,
-            has_firings: type_name == FIRING && self.of_topics.firings.is_some(),
-            frames: Vec::new(),
-            next: 0,
-            undecoded: 0,
-            beams: 0,
-            infrared: 0,
-            judged,
-            unit: None,
-            is_asked,
-        }
+        let has_firings = type_name == FIRING && self.of_topics.firings.is_some();
+        Topic { name: name.to_owned(), decoding, has_firings, judged, is_asked, ..Topic::default() }
     }
 
     /// Adds a message on a topic, recorded at this time.

@@ -14,7 +14,7 @@ use super::plan::{Plan, guess};
 impl Plan {
     /// Chooses one time column, or two that form one: seconds and nanoseconds, a date and a time of day.
     pub(super) fn time_columns(&mut self, asked: Option<usize>) {
-        let times: Vec<_> = (0..self.columns.len()).filter(|&index| self.columns[index].role == Role::Time).collect();
+        let times = self.places(Role::Time);
         let is_time = |index: &usize| !self.columns[*index].numbers.is_empty() || self.columns[*index].calendars > 0;
         let usable: Vec<_> = times.iter().copied().filter(is_time).collect();
         let chosen: Vec<usize> = if let Some(asked) = asked {
@@ -85,10 +85,7 @@ impl Plan {
         asked_ranges: &[usize],
         lines: &[(u64, &str)],
     ) -> Result<(), FileError> {
-        let of = |role: &Role| -> Vec<usize> {
-            (0..self.columns.len()).filter(|&index| self.columns[index].role == *role).collect()
-        };
-        let (ranges, named) = (of(&Role::Range), of(&Role::Sensor));
+        let (ranges, named) = (self.places(Role::Range), self.places(Role::Sensor));
         let is_label = |index: &usize| {
             let column = &self.columns[*index];
             let counts = column.numbers.len() > 2 && column.numbers.windows(2).all(|two| two[1] == two[0] + 1.0);
@@ -129,7 +126,7 @@ impl Plan {
             );
             return Err(FileError::new(file, message));
         }
-        let is_alone = ranges.is_empty() && of(&Role::Empty).is_empty() && asked_ranges.is_empty();
+        let is_alone = ranges.is_empty() && self.places(Role::Empty).is_empty() && asked_ranges.is_empty();
         for index in named {
             if chosen != Some(index) {
                 let is_range = is_alone && self.columns[index].is_range();
@@ -152,17 +149,11 @@ impl Plan {
         }
         let names: Vec<_> = match chosen {
             Some(_) => self.known.iter().cloned().collect(),
-            None => self
-                .columns
-                .iter()
-                .filter(|column| column.role == Role::Range)
-                .map(|column| column.name.clone())
-                .collect(),
+            None => self.ranges().map(|column| column.name.clone()).collect(),
         };
-        let is_said = |column: &Column| column.role == Role::Range && Self::is_called(column);
         let by = match chosen {
             Some(index) => format!(", by column `{}`", self.columns[index].name),
-            None if names.is_empty() || asked_ranges.len() + usize::from(self.columns.iter().any(is_said)) > 0 => {
+            None if names.is_empty() || asked_ranges.len() + usize::from(self.ranges().any(Self::is_called)) > 0 => {
                 String::new()
             }
             None => ", which no name and no unit calls ranges".to_owned(),

@@ -8,7 +8,7 @@ use super::validity::are_verdicts;
 use crate::names;
 use crate::value::{self, Value};
 
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Role {
     /// The ranges of a sensor.
     Range,

@@ -54,8 +54,7 @@ impl Plan {
         if let Some(unit) = asked {
             self.doubt(unit, options);
         } else {
-            let of_ranges = self.columns.iter().filter(|column| column.role == Role::Range);
-            let mut found: Vec<&str> = of_ranges.map(|column| column.unit.name()).collect();
+            let mut found: Vec<&str> = self.ranges().map(|column| column.unit.name()).collect();
             found.dedup();
             let why = match (values.first(), values.last()) {
                 (Some((least, _)), Some((most, _))) => format!(", by values of {least} to {most}"),
@@ -89,20 +88,17 @@ impl Plan {
             && !ranges().any(|&index| is_called(&self.columns[index]))
         {
             let taken: Vec<_> = ranges().copied().collect();
-            for index in taken {
-                self.columns[index].role = Role::Other;
-                let why = "nearer or farther than modules hear, in any unit";
-                self.skipped.push(Skipped::new(&self.columns[index].name, why));
-            }
+            let why = "nearer or farther than modules hear, in any unit";
+            self.skipped.extend(taken.iter().map(|&index| Skipped::new(&self.columns[index].name, why)));
+            self.leave_out(taken);
         }
     }
 
     /// Warns about a unit with which most ranges are nearer or farther than ultrasonic sensors hear.
     fn doubt(&mut self, unit: RangeUnit, options: &Options) {
         const PLAUSIBLE_M: std::ops::RangeInclusive<f64> = 0.01..=25.0;
-        let ranges = self.columns.iter().filter(|column| column.role == Role::Range);
         let mut values: Vec<_> =
-            ranges.flat_map(|column| column.numbers.iter().copied()).filter(|&n| n > 0.0).collect();
+            self.ranges().flat_map(|column| column.numbers.iter().copied()).filter(|&n| n > 0.0).collect();
         values.sort_by(f64::total_cmp);
         let Some(median) = values.get(values.len() / 2) else { return };
         let metres = median * unit.metres(options.speed_of_sound);
@@ -162,9 +158,8 @@ impl Plan {
             ranges.iter().flat_map(|column| column.distinct.keys().filter(is_word)).cloned().collect();
         said.extend(words);
         if ranges.iter().any(|column| column.empties > 0) {
-            said.push(
-                if self.one_a_row { "an empty cell is another sensor's row" } else { "an empty cell" }.to_owned(),
-            );
+            let of_another = if self.one_a_row { " is another sensor's row" } else { "" };
+            said.push(format!("an empty cell{of_another}"));
         }
         said.push(format!("{} m and more", options.no_echo_m));
         self.guesses.push(guess("no echo", said.join(", "), "--no-echo, --no-echo-m"));

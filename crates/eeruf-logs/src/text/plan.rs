@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeSet, HashMap};
 
-use super::column::Column;
+use super::column::{Column, Role};
 use super::shape::Shape;
 use crate::options::TimeUnit;
 use crate::sink::{Guess, Skipped};
@@ -79,6 +79,29 @@ pub(super) struct Plan {
     /// A warning about ranges that no ultrasonic sensor measures.
     pub(super) implausible: Option<String>,
     pub(super) skipped: Vec<Skipped>,
+}
+
+impl Plan {
+    /// The columns with this role, by their places.
+    pub(super) fn places(&self, role: Role) -> Vec<usize> {
+        (0..self.columns.len()).filter(|&index| self.columns[index].role == role).collect()
+    }
+
+    /// The columns with ranges.
+    pub(super) fn ranges(&self) -> impl Iterator<Item = &Column> {
+        self.columns.iter().filter(|column| column.role == Role::Range)
+    }
+
+    /// Makes columns no ranges, given by their places.
+    pub(super) fn leave_out(&mut self, places: impl IntoIterator<Item = usize>) {
+        places.into_iter().for_each(|index| self.columns[index].role = Role::Other);
+    }
+
+    /// Makes columns with ranges no ranges, if a condition holds for them.
+    pub(super) fn leave_out_if(&mut self, is_out: impl Fn(&Column) -> bool) {
+        let out = self.columns.iter_mut().filter(|column| column.role == Role::Range && is_out(column));
+        out.for_each(|column| column.role = Role::Other);
+    }
 }
 
 pub(super) fn guess(what: &str, value: impl Into<String>, option: &str) -> Guess {

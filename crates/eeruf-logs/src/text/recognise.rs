@@ -109,11 +109,6 @@ impl Plan {
         let is_header = |row: &[String]| {
             !has_number(row) && row.iter().any(|text| text.contains(char::is_alphabetic) && !value::is_no_echo(text))
         };
-        let is_units = |row: &[String]| {
-            let is_unit =
-                |text: &String| text.is_empty() || value::unit(text).is_some() || names::time_unit(text).is_some();
-            row.iter().all(is_unit)
-        };
         let mut before = &rows[..first];
         while let [rest @ .., (_, cells)] = before
             && width > 1
@@ -124,15 +119,7 @@ impl Plan {
         let is_near = |row: &Vec<String>| width <= row.len() + 1;
         let header = before.iter().rposition(|(_, row)| is_header(row) && row.len() == width);
         let mut header = header.or_else(|| before.iter().rposition(|(_, row)| is_header(row) && is_near(row)));
-        let (mut units, mut other_units, mut is_long) = (vec![], vec![], false);
-        if let Some(at) = header
-            && at > 0
-            && is_units(&before[at].1)
-            && is_header(&before[at - 1].1)
-        {
-            units = before[at].1.iter().map(|text| value::unit(text)).collect();
-            header = Some(at - 1);
-        }
+        let (mut units, mut other_units) = (vec![], vec![]);
         // Names, units and what was done with the values, a row each, as loggers of weather stations write them.
         let is_whole = |row: &Vec<String>| row.len() == width && is_header(row);
         let is_names = |row: &Vec<String>| {
@@ -148,7 +135,7 @@ impl Plan {
         {
             units = row.iter().map(|text| value::unit(text)).collect();
             other_units = row.iter().map(|text| !text.is_empty() && value::unit(text).is_none()).collect();
-            (header, is_long) = (Some(top), true);
+            header = Some(top);
         }
         let mut names: Option<Vec<String>> = header.map(|at| before[at].1.clone());
         // Names that come again are parted by the row above.
@@ -172,8 +159,8 @@ impl Plan {
             });
         }
         self.rows_from = match header {
-            Some(_) if before.len() < first || is_long => first_number,
-            Some(at) => rows[at].0 + 1 + u64::from(!units.is_empty()),
+            Some(_) if before.len() < first || !units.is_empty() => first_number,
+            Some(at) => rows[at].0 + 1,
             None => {
                 let text = |line: &Line| line.text.contains(|letter: char| letter.is_ascii_digit());
                 sample.iter().find(|line| text(line) && !is_comment(&line.text)).map_or(0, |line| line.number)
@@ -511,7 +498,7 @@ impl Plan {
                 return Err(FileError::new(file, message));
             }
         }
-        let found = self.columns.iter().filter(|column| column.role == Role::Range).count();
+        let found = self.ranges().count();
         if lines.len() == 1 && found > 8 {
             let message = format!("one record with {found} values; expected a line or an object for each instant");
             return Err(FileError::new(file, message));
@@ -522,8 +509,10 @@ impl Plan {
     /// Copies the unit in the cells of `e2` to `e0` and `e1`, if it is written once a line.
     fn shared_units(&mut self) {
         let stem = |name: &str| name.trim_end_matches(|letter: char| letter.is_ascii_digit()).to_owned();
-        let is_one = |column: &&Column| column.role == Role::Range && column.needs_unit();
-        let said = self.columns.iter().filter(is_one).map(|column| (stem(&column.name), column.has_unit_in_cells));
+        let said = self
+            .ranges()
+            .filter(|column| column.needs_unit())
+            .map(|column| (stem(&column.name), column.has_unit_in_cells));
         let said: BTreeMap<_, _> = said.collect();
         for column in self.columns.iter_mut().filter(|column| column.role == Role::Range && column.units == 0) {
             if let Some(unit) = said.get(&stem(&column.name)).filter(|_| stem(&column.name) != column.name) {
@@ -535,14 +524,12 @@ impl Plan {
     /// Removes columns that neither a name nor a unit marks as ranges, if others are marked.
     fn named_ranges_alone(&mut self) {
         // Letters are names of places if there are two or more.
-        let is_letter = |column: &Column| column.role == Role::Range && names::is_letter_of_place(&column.name);
-        let is_single = |column: &&Column| column.role == Role::Range && column.name.chars().count() == 1;
-        let singles: Vec<_> = self.columns.iter().filter(is_single).collect();
+        let is_letter = |column: &Column| names::is_letter_of_place(&column.name);
+        let singles: Vec<_> = self.ranges().filter(|column| column.name.chars().count() == 1).collect();
         let has_letters = singles.len() > 1 && singles.iter().all(|column| is_letter(column));
         let is_called = |column: &Column| Self::is_called(column) || has_letters && is_letter(column);
-        if self.columns.iter().any(|column| column.role == Role::Range && is_called(column)) {
-            let vague = self.columns.iter_mut().filter(|column| column.role == Role::Range && !is_called(column));
-            vague.for_each(|column| column.role = Role::Other);
+        if self.ranges().any(is_called) {
+            self.leave_out_if(|column| !is_called(column));
         }
     }
 
@@ -550,7 +537,7 @@ impl Plan {
     /// ranges, a column that changes and is always beyond the reach of modules is removed.
     fn one_kind(&mut self) {
         const FARTHEST_M: f64 = 8.0;
-        let of: Vec<_> = (0..self.columns.len()).filter(|&index| self.columns[index].role == Role::Range).collect();
+        let of = self.places(Role::Range);
         let is_called = of.iter().any(|&index| Self::is_called(&self.columns[index]));
         if !is_called && self.sensor_names() == 0 {
             let is_plain = |&&index: &&usize| {
@@ -564,9 +551,7 @@ impl Plan {
             let is_one = |index: &&usize| !ring.contains(index) && self.columns[**index].name.chars().count() == 1;
             let is_ring =
                 ring.len() > of.len() / 2 && !ring.iter().all(is_pin) && !of.iter().any(|index| is_one(&index));
-            let others = of.iter().filter(|index| !is_ring || !ring.contains(index));
-            others.for_each(|&index| self.columns[index].role = Role::Other);
-            return;
+            return self.leave_out(of.into_iter().filter(|index| !is_ring || !ring.contains(index)));
         }
         let is_beyond = |index: usize| {
             let column = &self.columns[index];
@@ -577,7 +562,7 @@ impl Plan {
         let is_near = |index: usize| self.columns[index].numbers.iter().any(|&number| number > 0.0 && number < 1.5);
         if of.iter().any(|&index| is_near(index)) {
             let beyond: Vec<_> = of.into_iter().filter(|&index| is_beyond(index)).collect();
-            beyond.into_iter().for_each(|index| self.columns[index].role = Role::Other);
+            self.leave_out(beyond);
         }
     }
 
@@ -589,31 +574,28 @@ impl Plan {
     /// Removes a depth or a level beside a column that is called a range, since it is computed from it.
     fn without_derived(&mut self) {
         let is_called = |column: &Column| {
-            column.role == Role::Range
-                && (names::meaning(&column.name) == Meaning::Range || names::quantity(&column.name).is_empty())
+            (names::meaning(&column.name) == Meaning::Range || names::quantity(&column.name).is_empty())
                 && !names::is_derived(&column.name)
         };
-        if self.columns.iter().any(is_called) {
-            let derived = |column: &&mut Column| column.role == Role::Range && names::is_derived(&column.name);
-            self.columns.iter_mut().filter(derived).for_each(|column| column.role = Role::Other);
+        if self.ranges().any(is_called) {
+            self.leave_out_if(|column| names::is_derived(&column.name));
         }
     }
 
     /// Returns true if nearly every row of a table has one range, and empty cells for the other sensors.
     fn is_one_a_row(&self, lines: &[(u64, &str)]) -> bool {
-        let Shape::Separated(separator) = self.shape else { return false };
+        if !matches!(self.shape, Shape::Separated(_)) {
+            return false;
+        }
         let is_of_sensor = |column: &Column| matches!(column.role, Role::Range | Role::Empty);
         if self.columns.iter().filter(|column| is_of_sensor(column)).count() < 2 {
             return false;
         }
-        let rows = lines.iter().filter(|line| line.0 >= self.rows_from);
-        let rows: Vec<_> = rows.filter_map(|(_, text)| shape::separated(text, separator)).collect();
-        let ranges = |row: &Vec<String>| {
-            let cells = self.columns.iter().zip(row).filter(|(column, _)| is_of_sensor(column));
-            cells.filter(|(_, cell)| !cell.is_empty()).count()
+        let ranges = |row: &Vec<(usize, String)>| {
+            row.iter().filter(|(index, cell)| is_of_sensor(&self.columns[*index]) && !cell.is_empty()).count()
         };
-        let of_one = rows.iter().filter(|row| ranges(row) == 1).count();
-        let of_any = rows.iter().filter(|row| ranges(row) > 0).count();
+        let counts: Vec<_> = self.split(lines).iter().map(ranges).filter(|&count| count > 0).collect();
+        let (of_one, of_any) = (counts.iter().filter(|&&count| count == 1).count(), counts.len());
         of_any >= 8 && of_one * 20 >= of_any * 19
     }
 

@@ -29,10 +29,7 @@ struct Series {
 impl Plan {
     /// Omits columns that repeat another.
     pub(super) fn repetitions(&mut self, lines: &[(u64, &str)], options: &Options) {
-        let ranges = |plan: &Self| -> Vec<usize> {
-            (0..plan.columns.len()).filter(|&index| plan.columns[index].role == Role::Range).collect()
-        };
-        let found = ranges(self);
+        let found = self.places(Role::Range);
         let is_asked = !options.table.ranges.is_empty() || !options.table.columns.is_empty();
         if is_asked || !(1..=MOST).contains(&found.len()) {
             return;
@@ -81,7 +78,8 @@ impl Plan {
             self.columns[index].role = Role::Other;
         }
         // By their values.
-        let found: Vec<_> = ranges(self).into_iter().map(|index| (index, self.series(index, &rows))).collect();
+        let found: Vec<_> =
+            self.places(Role::Range).into_iter().map(|index| (index, self.series(index, &rows))).collect();
         for (n, (one, series)) in found.iter().enumerate() {
             for (other, repeated) in &found[n + 1..] {
                 let both = [*one, *other].map(|index| &self.columns[index]);
@@ -125,7 +123,7 @@ impl Plan {
                 left.extend(of);
             }
         }
-        left.into_iter().for_each(|index| self.columns[index].role = Role::Other);
+        self.leave_out(left);
     }
 
     /// The units to keep and to drop for a column whose cells alternately repeat each range in two units.

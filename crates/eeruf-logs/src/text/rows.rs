@@ -48,6 +48,12 @@ enum Unread {
     Damaged(String),
 }
 
+impl From<String> for Unread {
+    fn from(why: String) -> Self {
+        Self::Damaged(why)
+    }
+}
+
 const DAY_NS: u64 = 86_400_000_000_000;
 
 impl<'a, 's, 'e> Rows<'a, 's, 'e> {
@@ -101,7 +107,7 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
 
     /// The time before a line, and its cells by column.
     fn cells(&mut self, line: &Line) -> Result<(Option<u64>, Cells), Unread> {
-        let damaged = |why: String| Unread::Damaged(why);
+        let damaged = Unread::Damaged;
         if line.is_too_long {
             return Err(damaged("more than 65536 bytes without a line break".to_owned()));
         }
@@ -147,19 +153,14 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
                 let is_remark = || self.plan.greetings.contains(text) || is_end();
                 let is_odd = cells.len() != width;
                 if is_odd && names::is_place(text) && self.sink.report.messages > 0 && !is_remark() {
-                    return Err(damaged(format!(
-                        "`{}` between rows: what follows may be another sensor's",
-                        short(text)
-                    )));
+                    return Err(format!("`{}` between rows: what follows may be another sensor's", short(text)).into());
                 }
                 if is_odd && is_remark() || line.is_ended && (is_odd || width == 1) && self.is_sentence(text) {
                     return Err(Unread::Other);
                 }
                 if is_odd {
-                    let message = format!("`{}`: number of cells {}; expected {width}", short(text), cells.len());
-                    return Err(damaged(message));
+                    Err(format!("`{}`: number of cells {}; expected {width}", short(text), cells.len()))?;
                 }
-                self.whole(line, &cells)?;
                 cells.into_iter().enumerate().collect()
             }
             Shape::Json => {
@@ -192,17 +193,14 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
                 if let Some(usual) = &self.plan.usual_names
                     && !pairs.iter().map(|(name, _)| name).eq(usual)
                 {
-                    let message = format!("`{}`; expected {}, as the other lines have", short(text), usual.join(", "));
-                    return Err(damaged(message));
+                    Err(format!("`{}`; expected {}, as the other lines have", short(text), usual.join(", ")))?;
                 }
-                let cells = self.by_name(pairs);
-                let last: Vec<_> = cells.iter().map(|(_, text)| text.clone()).collect();
-                if let Some(&(index, _)) = cells.last() {
-                    self.ends_whole(line, index, last.last().map_or("", String::as_str))?;
-                }
-                cells
+                self.by_name(pairs)
             }
         };
+        if let Some((index, last)) = pairs.last().filter(|_| self.plan.shape != Shape::Json) {
+            self.ends_whole(line, *index, last)?;
+        }
         Ok((time, pairs))
     }
 
@@ -240,16 +238,11 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
         cells
     }
 
-    fn whole(&mut self, line: &Line, cells: &[String]) -> Result<(), Unread> {
-        cells.last().map_or(Ok(()), |last| self.ends_whole(line, cells.len() - 1, last))
-    }
-
     /// Refuses a last line without a line break whose last value is shorter than others: it may be cut.
     fn ends_whole(&mut self, line: &Line, index: usize, last: &str) -> Result<(), Unread> {
         let column = &mut self.plan.columns[index];
         if !line.is_ended && last.len() < column.longest {
-            let message = format!("`{}` ends without a line break and may be cut", short(&line.text));
-            return Err(Unread::Damaged(message));
+            Err(format!("`{}` ends without a line break and may be cut", short(&line.text)))?;
         }
         column.longest = column.longest.max(last.len());
         Ok(())
@@ -260,10 +253,9 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
         let mut at_ns = before;
         for &(index, unit) in &self.plan.time {
             if let Some(own) = text(index).filter(|text| !text.is_empty()) {
-                let ns = time_ns(own, unit, self.plan.decimal_comma).ok_or_else(|| {
-                    let name = &self.plan.columns[index].name;
-                    Unread::Damaged(format!("column {name}: `{}`; expected a time of zero or more", short(own)))
-                })?;
+                let name = &self.plan.columns[index].name;
+                let bad = || format!("column {name}: `{}`; expected a time of zero or more", short(own));
+                let ns = time_ns(own, unit, self.plan.decimal_comma).ok_or_else(bad)?;
                 at_ns = Some(at_ns.filter(|_| before.is_none()).unwrap_or(0).saturating_add(ns));
             }
         }
@@ -273,25 +265,17 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
             Some(number * column.unit.metres(self.options.speed_of_sound))
         };
         let (least, most) = (limit(Role::Least), limit(Role::Most).filter(|&most| most > 0.0));
-        let label = match self.plan.sensor {
-            Some(index) => Some(text(index).filter(|label| !label.is_empty()).ok_or(Unread::Other)?.to_owned()),
-            None => None,
-        };
-        if label.as_ref().is_some_and(|label| self.plan.foreign.contains(label)) {
-            return Err(Unread::Other);
-        }
+        let is_known = |label: &&str| !label.is_empty() && !self.plan.foreign.contains(*label);
+        let label = |index| text(index).filter(is_known).map(str::to_owned).ok_or(Unread::Other);
+        let label = self.plan.sensor.map(label).transpose()?;
         if let Some((index, ultrasound)) = self.plan.medium
             && text(index).and_then(|own| value::number(own, false)).is_some_and(|number| number != ultrasound)
         {
             self.of_light += 1;
             return Err(Unread::Other);
         }
-        let unit = match self.plan.unit.and_then(text) {
-            Some(own) => Some(value::unit(own).ok_or_else(|| {
-                Unread::Damaged(format!("the unit `{}`; expected one as in the rows before", short(own)))
-            })?),
-            None => None,
-        };
+        let odd = |own| format!("the unit `{}`; expected one as in the rows before", short(own));
+        let unit = self.plan.unit.and_then(text).map(|own| value::unit(own).ok_or_else(|| odd(own))).transpose()?;
         let mut found = vec![];
         let mut begun = vec![];
         for (index, own) in cells {
@@ -308,8 +292,7 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
                     begun.push(*index);
                 }
                 Role::Other if column.is_numeric && value::range(own, self.plan.decimal_comma).is_none() => {
-                    let message = format!("column {}: `{}`; expected a number, as before", column.name, short(own));
-                    return Err(Unread::Damaged(message));
+                    Err(format!("column {}: `{}`; expected a number, as before", column.name, short(own)))?;
                 }
                 _ => continue,
             }
@@ -397,10 +380,7 @@ impl<'a, 's, 'e> Rows<'a, 's, 'e> {
             Some((Value::Number(number), unit)) => (number, unit),
             Some((Value::NoEcho, _)) => return Ok(f64::INFINITY),
             Some((Value::TooClose, _)) => return Ok(f64::NEG_INFINITY),
-            None => {
-                let message = format!("column {name}: `{}`; expected a range in {}", short(text), unit.name());
-                return Err(Unread::Damaged(message));
-            }
+            None => Err(format!("column {name}: `{}`; expected a range in {}", short(text), unit.name()))?,
         };
         if own_unit.is_some() && own_unit == column.repeated_unit {
             return Err(Unread::Other);

@@ -114,7 +114,15 @@ impl<'a> Form<'a> {
         input.consume(skip);
         let mut input: Input<'a> = match utf16 {
             None => BufReader::new(Box::new(input)),
-            Some(is_big) => BufReader::new(Box::new(Utf16 { input, is_big, out: VecDeque::new(), high: None })),
+            Some(is_big) => {
+                let mut bytes = input.bytes().map_while(Result::ok);
+                let unit = move || {
+                    let pair = [bytes.next()?, bytes.next().unwrap_or_default()];
+                    Some(if is_big { u16::from_be_bytes(pair) } else { u16::from_le_bytes(pair) })
+                };
+                let letters = char::decode_utf16(std::iter::from_fn(unit));
+                BufReader::new(Box::new(Utf16 { letters, out: VecDeque::new() }))
+            }
         };
         let start = String::from_utf8_lossy(input.fill_buf()?).into_owned();
         if let Some(end) = End::of(&start) {
@@ -171,34 +179,18 @@ fn rangefinder(line: &str) -> Option<String> {
     Some(cells.join(","))
 }
 
-/// A reader that transcodes UTF-16 to UTF-8.
-struct Utf16<R> {
-    input: R,
-    is_big: bool,
+/// A reader of UTF-16 as UTF-8.
+struct Utf16<U: Iterator<Item = u16>> {
+    letters: std::char::DecodeUtf16<U>,
     out: VecDeque<u8>,
-    high: Option<u16>,
 }
 
-impl<R: Read> Read for Utf16<R> {
+impl<U: Iterator<Item = u16>> Read for Utf16<U> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
-        while self.out.is_empty() {
-            let mut pairs = Vec::new();
-            (&mut self.input).take(1 << 13).read_to_end(&mut pairs)?;
-            if pairs.is_empty() && self.high.is_none() {
-                return Ok(0);
-            }
-            let unit = |pair: &[u8]| match (self.is_big, pair) {
-                (false, &[low, high]) => u16::from_le_bytes([low, high]),
-                (true, &[high, low]) => u16::from_be_bytes([high, low]),
-                _ => 0xfffd,
-            };
-            let is_end = pairs.is_empty();
-            let mut units: Vec<u16> = self.high.take().into_iter().chain(pairs.chunks(2).map(unit)).collect();
-            if !is_end && units.last().is_some_and(|last| (0xd800..0xdc00).contains(last)) {
-                self.high = units.pop();
-            }
-            let text: String = char::decode_utf16(units).map(|letter| letter.unwrap_or('\u{fffd}')).collect();
-            self.out.extend(text.bytes());
+        while self.out.len() < into.len()
+            && let Some(letter) = self.letters.next()
+        {
+            self.out.extend(letter.unwrap_or('\u{fffd}').encode_utf8(&mut [0; 4]).bytes());
         }
         self.out.read(into)
     }

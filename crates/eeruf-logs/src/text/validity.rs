@@ -73,10 +73,9 @@ fn meaning(column: &Column) -> Option<(Says, &'static str)> {
 impl Plan {
     /// Finds the columns that say whether ranges are valid.
     pub(super) fn validities(&mut self) {
-        let ranges: Vec<usize> =
-            (0..self.columns.len()).filter(|&index| self.columns[index].role == Role::Range).collect();
+        let ranges = self.places(Role::Range);
         let mut said = vec![];
-        for index in (0..self.columns.len()).filter(|&index| self.columns[index].role == Role::Other) {
+        for index in self.places(Role::Other) {
             let Some((meaning, why)) = meaning(&self.columns[index]) else { continue };
             let without = |name: &str| {
                 let mut words = names::stem(name);

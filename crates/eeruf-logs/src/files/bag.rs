@@ -63,7 +63,7 @@ pub(crate) struct Head {
 pub(crate) struct Chunk<'a> {
     /// Number of unpacked bytes.
     pub(crate) length: u64,
-    /// Their check sum; 0 for none.
+    /// Check sum of the unpacked bytes; 0 for none.
     pub(crate) sum: u32,
     pub(crate) compression: &'a [u8],
     pub(crate) packed: &'a [u8],

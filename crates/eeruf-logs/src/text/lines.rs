@@ -75,21 +75,10 @@ impl<'a> Lines<'a> {
         if bytes.is_empty() {
             return Ok(None);
         }
-        self.number += 1;
-        let mut is_too_long = false;
-        if bytes.len() == LONGEST_LINE && bytes.last() != Some(&b'\n') && !bytes.contains(&b'\r') {
-            is_too_long = true;
-            while !self.input.fill_buf()?.is_empty() {
-                let part = self.input.fill_buf()?;
-                let end = part.iter().position(|&byte| byte == b'\n');
-                let used = end.map_or(part.len(), |end| end + 1);
-                self.input.consume(used);
-                if end.is_some() {
-                    break;
-                }
-            }
-            bytes.clear();
-            bytes.push(b'\n');
+        let is_too_long = bytes.len() == LONGEST_LINE && bytes.last() != Some(&b'\n') && !bytes.contains(&b'\r');
+        if is_too_long {
+            self.input.skip_until(b'\n')?;
+            bytes = vec![b'\n'];
         }
         let is_ended = bytes.last() == Some(&b'\n');
         let text = String::from_utf8_lossy(&bytes);
@@ -100,22 +89,12 @@ impl<'a> Lines<'a> {
         let bytes = text.strip_prefix("b'").and_then(|text| text.strip_suffix('\''));
         let text = bytes.map_or(text.as_ref(), |text| text.trim_end_matches("\\n").trim_end_matches("\\r"));
         let mut parts = text.split('\r').peekable();
-        let first = parts.next().unwrap_or_default().to_owned();
-        let is_last = parts.peek().is_none();
-        let line =
-            Line { number: self.number, text: first, is_ended: is_ended || !is_last, is_too_long, is_misfit: false };
         while let Some(part) = parts.next() {
             self.number += 1;
-            let is_ended = is_ended || parts.peek().is_some();
-            self.pending.push_back(Line {
-                number: self.number,
-                text: part.to_owned(),
-                is_ended,
-                is_too_long: false,
-                is_misfit: false,
-            });
+            let (number, text, is_ended) = (self.number, part.to_owned(), is_ended || parts.peek().is_some());
+            self.pending.push_back(Line { number, text, is_ended, is_too_long, is_misfit: false });
         }
-        Ok(Some(line))
+        Ok(self.pending.pop_front())
     }
 }
 

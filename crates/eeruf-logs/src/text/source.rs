@@ -28,8 +28,6 @@ enum Form<'a> {
     Lines(Lines<'a>),
     Objects(Objects<'a>),
     Messages(Lines<'a>, End),
-    /// An ArduPilot log as text: many tables in one file, one of which has ranges.
-    DataFlash(Lines<'a>),
     /// Lines that wrap readings in a named form, rewritten into lines that can be read.
     Rewritten(Lines<'a>, &'static str, Rewriter),
 }
@@ -50,11 +48,6 @@ impl<'a> Source<'a> {
                 Form::Rewritten(lines, _, rewrite) => (lines.next()?, Some(rewrite)),
                 Form::Objects(objects) => return objects.next(),
                 Form::Messages(lines, end) => return messages::next(lines, *end),
-                Form::DataFlash(lines) => {
-                    let Some(line) = lines.next()? else { return Ok(None) };
-                    self.pending.extend(rangefinder(&line.text).map(|text| Line { text, ..line }));
-                    continue;
-                }
             };
             let Some(line) = line else { return Ok(None) };
             let is_start = self.boot.is_boot(&line.text);
@@ -84,7 +77,6 @@ impl<'a> Source<'a> {
             Form::Objects(_) => Some("JSON, a document"),
             Form::Messages(_, End::Rule) => Some("messages, as `ros2 topic echo` prints them"),
             Form::Messages(..) => Some("blocks of name and value"),
-            Form::DataFlash(_) => Some("RFND of an ArduPilot log"),
             Form::Rewritten(_, name, _) => Some(name),
         }
     }
@@ -131,9 +123,6 @@ impl<'a> Form<'a> {
         if let Some((name, rewrite)) = rewriter(&start) {
             return Ok(Self::Rewritten(Lines::new(input), name, rewrite));
         }
-        if start.starts_with("FMT,") {
-            return Ok(Self::DataFlash(Lines::new(input)));
-        }
         // Keyword lines, such as `#SONAR 24: 53 cm`.
         let has_hashes = start
             .lines()
@@ -159,6 +148,11 @@ impl<'a> Form<'a> {
 
 /// The form of a text whose lines are rewritten, from its beginning.
 fn rewriter(start: &str) -> Option<(&'static str, Rewriter)> {
+    // An ArduPilot log as text: many tables in one file, one of which has ranges.
+    if start.starts_with("FMT,") {
+        let rewrite = |line: &str| Rewritten::Lines(rangefinder(line).into_iter().collect());
+        return Some(("RFND of an ArduPilot log", Box::new(rewrite)));
+    }
     // The last line may not be whole, and the first may be cut.
     let whole = start.rsplit_once('\n').map_or(start, |(whole, _)| whole);
     let lines = whole.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with('#'));

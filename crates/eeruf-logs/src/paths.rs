@@ -49,7 +49,8 @@ pub(crate) trait Evidence {
     fn refresh(&mut self) {}
 }
 
-/// Finds the paths with less than this expected number of accidents among so many places.
+/// Finds the best supported paths, until more than `most` accidents are expected among the places, given by the
+/// logarithm of their number.
 pub(crate) fn paths<E: Evidence>(of: &mut E, ln_places: f64, most: f64, keep_going: KeepGoing<'_>) -> Vec<FoundPath> {
     let mut found = Vec::new();
     while found.len() < E::MOST_PATHS {

@@ -8,6 +8,7 @@
 //! | ROS 1 bag | the same, format 2.0; chunks of bz2, lz4 or neither |
 //! | text | tables with any separator, with or without header; pairs of name and value; JSON |
 //! | flight logs: `.BIN`, `.tlog`, `.ulg` | distances that a sensor measures by sound, with their quality |
+//! | frames of `eeruf-serial`, as they came | each firing |
 //! | any of these packed | as a whole, by gzip, bzip2 or zstd |
 //!
 //! `Range` has had a `variance` since ROS 2 Iron: the file's schema says whether it is there, or else the message's

@@ -42,6 +42,9 @@ pub(crate) enum Parts {
     Columns,
     #[cfg(feature = "files")]
     Topics,
+    /// Frames of the serial line, which have neither columns nor topics.
+    #[cfg(feature = "files")]
+    Frames,
 }
 
 impl Options {
@@ -52,6 +55,8 @@ impl Options {
             Parts::Columns => (bags(), "columns and no topics; --range and --sensor choose columns"),
             #[cfg(feature = "files")]
             Parts::Topics => (self.of_columns(), "topics and no columns; --topic and --field choose topics"),
+            #[cfg(feature = "files")]
+            Parts::Frames => ([self.of_columns(), bags()].concat(), "frames of the serial line, which say all"),
         };
         let (verb, them) = if idle.len() == 1 { ("has", "it") } else { ("have", "them") };
         let idle = if idle.is_empty() { return None } else { idle.join(", ") };

@@ -5,7 +5,7 @@ use std::io::{self, Read};
 use std::path::Path;
 
 use super::form::{Form, Opened};
-use super::{firing_messages, firing_text};
+use super::{firing_messages, firing_text, serial};
 use crate::firings::FiringLog;
 use eeruf_files::FileError;
 
@@ -19,7 +19,7 @@ fn not_firings(file: &Path, form: &str) -> FileError {
 }
 
 impl FiringLog {
-    /// Reads a log, text or MCAP, recognised by its first bytes, packed or not.
+    /// Reads a log, text, MCAP or frames of the serial line, recognised by its first bytes, packed or not.
     ///
     /// # Errors
     /// A file that cannot be read, columns that are missing, or text without a whole line; MCAP without firings,
@@ -42,6 +42,7 @@ impl FiringLog {
         let read = match opened.form {
             Form::Mcap => firing_messages::read(&mut opened, name),
             Form::Text => firing_text::read(&mut opened, name),
+            Form::Serial => serial::firings(&mut opened, name),
             Form::Foreign(foreign) => Err(foreign.refuse(name)),
             other => Err(not_firings(name, other.name())),
         };

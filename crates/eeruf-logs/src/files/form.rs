@@ -19,6 +19,8 @@ pub(crate) enum Form {
     Mcap,
     Ros1,
     Sqlite,
+    /// Frames of the serial line.
+    Serial,
     Text,
     Packed(Packing),
     Flight(Flight),
@@ -70,8 +72,9 @@ impl Form {
     pub(crate) fn of(first: &[u8], file: &Path) -> Self {
         let ending = file.extension().and_then(|ending| ending.to_str()).unwrap_or_default();
         let by_magic = MAGICS.iter().find(|(magic, _)| first.starts_with(magic)).map(|of| of.1);
+        let by_frames = || super::serial::is_serial(first).then_some(Self::Serial);
         let by_ending = || ENDINGS.iter().find(|(own, _)| own.eq_ignore_ascii_case(ending)).map(|of| of.1);
-        by_magic.or_else(by_ending).unwrap_or_else(|| match first.get(8) {
+        by_magic.or_else(by_frames).or_else(by_ending).unwrap_or_else(|| match first.get(8) {
             _ if !is_binary(first) => Self::Text,
             // A frame after its time.
             Some(0xfe | 0xfd) => Self::Flight(Flight::Telemetry),
@@ -90,6 +93,7 @@ impl Form {
             Self::Mcap => "MCAP",
             Self::Ros1 => "a ROS 1 bag",
             Self::Sqlite => "a ROS 2 bag's SQLite file",
+            Self::Serial => "frames of the serial line",
             Self::Text => "text",
             Self::Packed(packing) => packing.name(),
             Self::Flight(flight) => flight.name(),

@@ -15,6 +15,7 @@ mod ros1;
 mod ros2;
 mod rosbag2;
 mod schema;
+mod serial;
 mod topics;
 mod unzstd;
 mod write;
@@ -91,8 +92,8 @@ pub fn read_from(
     Ok(sink.finish(name))
 }
 
-/// Reads a log from a stream such as a pipe, like [`read_log`]; `name` is used in errors. Text is read
-/// as it arrives; a bag is copied into a temporary file first.
+/// Reads a log from a stream such as a pipe, like [`read_log`]; `name` is used in errors. Text and frames of the serial
+/// line are read as they arrive; a bag is copied into a temporary file first.
 ///
 /// # Errors
 /// See [`read_log`].
@@ -135,6 +136,7 @@ fn read_in_order(input: impl Read, name: &Path, sink: &mut Sink<'_>) -> Result<(
         // Nothing could be unpacked.
         Form::Text if opened.error.is_some() => {}
         Form::Text => text::read(&mut opened, name, sink)?,
+        Form::Serial => serial::read(&mut opened, name, sink)?,
         Form::Flight(flight) => flight::read(flight, &mut opened, name, sink)?,
         Form::Foreign(foreign) => return Err(foreign.refuse(name)),
         Form::Packed(_) => return Err(FileError::new(name, "packed twice; expected once: unpack it first")),

@@ -1,7 +1,10 @@
-//! Firing logs in the wild: any separator, damaged lines.
+//! Firing logs in the wild: any separator, frames of the serial line, damaged lines.
 
-use eeruf_core::ReadingKind;
-use eeruf_logs::FiringLog;
+use eeruf_core::{Instant, Micros, ReadingKind};
+use eeruf_logs::{Firing, FiringLog, Options};
+use eeruf_serial::Encoder;
+
+use crate::read;
 
 fn read_text(text: &str) -> FiringLog {
     FiringLog::read_from(text.as_bytes(), "log".as_ref()).unwrap()
@@ -51,6 +54,58 @@ fn damaged_lines_are_left_out_and_named() {
     let two = read_text(&format!("{header}a,b\n{whole}x\n"));
     assert_eq!(two.firings, all.firings);
     assert_eq!(two.damage.as_deref(), Some("2 lines are left out, first line 2: 2 cells; expected 5"));
+}
+
+/// Frames of 3 sensors through a wrap of the clock.
+fn frames() -> Vec<Vec<u8>> {
+    let mut encoder = Encoder::new();
+    let mut frames = vec![encoder.hello(3, "board").as_bytes().to_vec()];
+    for n in 0..30_u32 {
+        let firing = eeruf_serial::FiringMessage {
+            sensor: (n % 3) as u8,
+            phase: 0,
+            kind: if n % 5 == 0 { ReadingKind::NoEcho } else { ReadingKind::Accepted },
+            fired: Instant::from_micros(u32::MAX - 100_000) + Micros::new(20_000 * n),
+            period: n / 3,
+            t_echo: (n % 5 != 0).then_some(Micros::new(5000 + n)),
+            late: Micros::ZERO,
+            age: Micros::ZERO,
+            explained_by: None,
+        };
+        frames.push(encoder.firing(&firing).as_bytes().to_vec());
+    }
+    frames
+}
+
+#[test]
+fn frames_of_the_serial_line_are_readings_and_firings() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("line.bin");
+    std::fs::write(&file, frames().concat()).unwrap();
+    let (report, readings) = read(&file, &Options::default()).unwrap();
+    assert_eq!((report.form.as_str(), report.damage.len()), ("frames of the serial line", 0));
+    assert_eq!(report.names(), ["sonar_1", "sonar_2", "sonar_3"]);
+    assert_eq!(readings.len(), 30);
+    for (n, reading) in (0..).zip(&readings) {
+        assert_eq!(reading.at_ns, Some(1000 * (u64::from(u32::MAX) - 100_000 + 20_000 * n)));
+        let metres = if n % 5 == 0 { f64::INFINITY } else { 0.5e-6 * 343.2 * (5000 + n) as f64 };
+        assert!(reading.range_m == metres || (reading.range_m - metres).abs() < 0.02, "{reading:?}");
+    }
+    let log = FiringLog::read(&file).unwrap();
+    assert_eq!((log.clock.as_str(), log.firings.len(), &log.damage), ("board", 30, &None));
+    let is_rising = |two: &[Firing]| two[1].fired_us - two[0].fired_us == 20_000;
+    assert!(log.firings.windows(2).all(is_rising));
+
+    // A frame that is lost, one that is damaged, and a recording that begins in the middle of one.
+    let mut frames = frames();
+    frames.remove(7);
+    frames[9][5] ^= 1;
+    std::fs::write(&file, &frames.concat()[4..]).unwrap();
+    let (report, readings) = read(&file, &Options::default()).unwrap();
+    assert_eq!(readings.len(), 28);
+    assert_eq!(report.damage[0].message(), "frames: 1 damaged, 2 missing by their numbers");
+    let log = FiringLog::read(&file).unwrap();
+    assert_eq!(log.damage.as_deref(), Some("frames: 1 damaged, 2 missing by their numbers"));
 }
 
 #[test]

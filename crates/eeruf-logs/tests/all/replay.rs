@@ -4,6 +4,7 @@ use eeruf_core::flow::{BeliefSettings, FlowRing, TurnSettings, Votes};
 use eeruf_core::judge::Judge as _;
 use eeruf_core::{EachSensor, Instant, Micros, ReadingKind, RingConfig, RingEvent, Silence};
 use eeruf_logs::{Firing, FiringLog, FlowSettings, Replayed, replay_flow};
+use eeruf_serial::Encoder;
 
 use crate::random::Random;
 
@@ -114,4 +115,28 @@ fn log_of_a_flow_ring_is_judged_again_as_the_ring_did() {
             assert!(of > 2_900 && equal + 1 >= of, "{seed}, {late} us, {silence:?}, {speed:?}: {equal} of {of}");
         }
     }
+}
+
+#[test]
+fn frames_of_a_flow_ring_are_judged_again_as_the_ring_did() {
+    let ran = ran(1, BeliefSettings::DEFAULT, 900, Silence::Trusted, None);
+    let mut encoder = Encoder::new();
+    let mut frames = encoder.hello(SENSORS as u8, "board").as_bytes().to_vec();
+    for firing in &ran.log.firings {
+        let fired = Instant::from_micros((firing.fired_us as u32).wrapping_sub(2_000_000));
+        let frame = eeruf_serial::FiringMessage {
+            sensor: firing.sensor,
+            phase: 0,
+            kind: firing.reading.unwrap(),
+            fired,
+            period: firing.period,
+            t_echo: firing.t_echo_us.map(Micros::new),
+            late: Micros::ZERO,
+            age: Micros::ZERO,
+            explained_by: None,
+        };
+        frames.extend(encoder.firing(&frame).as_bytes());
+    }
+    let log = FiringLog::read_from(&frames[..], "line.bin".as_ref()).unwrap();
+    assert_eq!(equal(&log, &ran), (log.firings.len(), ran.log.firings.len()));
 }

@@ -1,6 +1,8 @@
 //! Judgement of a ring under the conditions that its file names: by how soon it sees objects that appear, with the cost
 //! of [`measure`](eeruf_sim::experiments::measure).
 
+use core::ops::Range;
+
 use eeruf_sim::Robot;
 use eeruf_sim::experiments::measure::{
     Cell, Condition, Costs, Estimate, Family, MeasureAsked, Measured, Moving, ONE_A_MINUTE, Operating, Point, RoomWay,
@@ -18,8 +20,8 @@ use crate::way::Way;
 pub const CHOICE: u64 = 1_000;
 /// Divisor of the number of rooms for conditions that the file does not name.
 const LESS: u64 = 3;
-/// Factor of the number of rooms for two ways that do not differ significantly.
-const MORE: u64 = 6;
+/// Factors of the number of rooms, one after the other, while two ways do not differ significantly.
+const MORE: [u64; 3] = [3, 6, 12];
 
 /// Ways of firing a ring, judged in rooms.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -145,20 +147,28 @@ impl Both {
         costs.recommended.map(|index| programs[index].0.to_string())
     }
 
-    /// Compares the ways of two programs, the simpler first, in more rooms: the one to recommend, and the other if it
-    /// costs less, but not significantly, each by its index.
+    /// Compares the ways of two programs, the simpler first, in more and more rooms while they do not differ
+    /// significantly: the one to recommend, and the other if it costs less, but not significantly, each by its index.
+    /// `run` measures ways in the rooms from one multiple of the number of rooms to another.
     fn in_more_rooms(
         &self,
         two: [(Family, usize); 2],
-        run: impl FnOnce(&[RoomWay]) -> Result<Measured, String>,
+        run: impl Fn(&[RoomWay], Range<u64>) -> Result<Measured, String>,
     ) -> Result<[Option<usize>; 2], String> {
         let kept = two.map(|(_, way)| way);
         let (chosen, two) = only(&self.chosen, &two, &kept);
         let mut measured = self.measured.only(|_| true, |way| kept.contains(&way));
-        measured.add(run(&measured.ways)?);
         let groups: Vec<_> = two.iter().map(|&(_, way)| as_program(way)).collect();
-        let Costs { recommended, draw, .. } = measured.costs(&chosen, &groups[0], &groups);
-        Ok([recommended, draw])
+        let (mut answer, mut done) = ([Some(0), Some(1)], 1);
+        for times in MORE {
+            measured.add(run(&measured.ways, done..times)?);
+            let Costs { recommended, draw, rival, .. } = measured.costs(&chosen, &groups[0], &groups);
+            (answer, done) = ([recommended, draw], times);
+            if rival.is_none() {
+                break;
+            }
+        }
+        Ok(answer)
     }
 
     /// The way of the program with the fewest false stops, for rings where none keeps to one a minute.
@@ -287,11 +297,13 @@ impl RingSpec {
         let here = Both { chosen, measured };
         let costs = here.costs(&programs).costs;
         let usable = recommendable(&here.measured, &programs);
-        let Costs { mut recommended, mut draw, .. } = here.costs(&usable);
-        if let (Some(one), Some(other), true) = (recommended, draw, asked.own.is_empty()) {
-            let first = asked.first.saturating_add(asked.places);
-            let more = RoomsAsked { first, places: asked.places * (MORE - 1), ..asked.clone() };
-            let of_two = here.in_more_rooms([usable[one], usable[other]], |ways| run(ways, used, &more))?;
+        let Costs { mut recommended, mut draw, rival, .. } = here.costs(&usable);
+        if let (Some(one), Some(other), true) = (recommended, rival, asked.own.is_empty()) {
+            let of_two = here.in_more_rooms([usable[one], usable[other]], |ways, times| {
+                let first = asked.first.saturating_add(asked.places * times.start);
+                let more = RoomsAsked { first, places: asked.places * (times.end - times.start), ..asked.clone() };
+                run(ways, used, &more)
+            })?;
             [recommended, draw] = of_two.map(|of| of.map(|index| [one, other][index]));
         }
         let kind_of = |family: Family| {

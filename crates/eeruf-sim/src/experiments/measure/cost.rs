@@ -164,6 +164,8 @@ pub struct Costs {
     pub recommended: Option<usize>,
     /// A group of lower cost that does not differ significantly from the recommended one.
     pub draw: Option<usize>,
+    /// A group that does not differ significantly from the recommended one, whether it costs less or more.
+    pub rival: Option<usize>,
 }
 
 impl Measured {
@@ -221,14 +223,14 @@ impl Measured {
         let costs = costs.map(|(operating, points)| Cost { operating, cost: against_base(points) }).collect();
         let usable: Vec<(usize, &Vec<Point>)> =
             points.iter().enumerate().filter_map(|(group, points)| Some((group, points.as_ref()?))).collect();
-        let [recommended, draw] = self.recommend(&usable);
-        Costs { costs, recommended, draw }
+        let [recommended, draw, rival] = self.recommend(&usable);
+        Costs { costs, recommended, draw, rival }
     }
 
     /// Recommends one of several groups, given with their points under each condition, simplest first. Also returns a
-    /// group of lower cost that does not differ significantly from the recommended one.
-    fn recommend(&self, usable: &[(usize, &Vec<Point>)]) -> [Option<usize>; 2] {
-        let Some((_, first)) = usable.first() else { return [None; 2] };
+    /// group of lower cost, and one of any cost, that do not differ significantly from the recommended one.
+    fn recommend(&self, usable: &[(usize, &Vec<Point>)]) -> [Option<usize>; 3] {
+        let Some((_, first)) = usable.first() else { return [None; 3] };
         let values: Vec<f64> = usable.iter().map(|(_, points)| self.ratio(points, first).value).collect();
         let best = (1..usable.len()).fold(0, |best, next| if values[next] < values[best] { next } else { best });
         let rooms = self.under.iter().map(|under| under.places.len()).min().unwrap_or(0);
@@ -237,8 +239,12 @@ impl Measured {
             ratio.holds(1.0) && (rooms < MANY_ROOMS || ratio.value <= 1.0 + NO_DRAW)
         };
         match (0..best).find(is_draw) {
-            Some(simpler) => [Some(usable[simpler].0), Some(usable[best].0)],
-            None => [Some(usable[best].0), None],
+            Some(simpler) => [simpler, best, best].map(|index| Some(usable[index].0)),
+            None => {
+                let rival =
+                    (best + 1..usable.len()).find(|&next| self.ratio(usable[next].1, usable[best].1).holds(1.0));
+                [Some(usable[best].0), None, rival.map(|index| usable[index].0)]
+            }
         }
     }
 }

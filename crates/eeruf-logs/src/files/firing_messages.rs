@@ -29,7 +29,7 @@ pub(crate) struct FiringMessages {
 
 /// Reads the firings of a file, up to damage; `file` is used in errors.
 pub(crate) fn read(input: &mut Opened<'_>, file: &Path) -> Result<FiringLog, FileError> {
-    let copy = input.to_file().map_err(|error| FileError::reading(file, &error))?;
+    let copy = input.copied().map_err(|error| FileError::reading(file, &error))?;
     let (options, mut each) = (Options::default(), |_: &_, _: &_| {});
     let mut sink = Sink::new(&options, &mut each);
     let decoder = Schema::parse(&definition(FIRING)).and_then(|schema| schema.decoder(&FIELDS));

@@ -170,7 +170,7 @@ impl<'a> Opened<'a> {
     }
 
     /// Copies a bag into a file that is deleted when dropped.
-    pub(crate) fn to_file(&mut self) -> io::Result<tempfile::NamedTempFile> {
+    pub(crate) fn copied(&mut self) -> io::Result<tempfile::NamedTempFile> {
         /// The largest bag that is copied.
         const LARGEST: u64 = 1 << 36;
         let mut file = tempfile::Builder::new().prefix("eeruf-").suffix(".bag").tempfile()?;

@@ -97,8 +97,8 @@ impl Form for Mcap {
 
     fn record(&mut self, header: &[u8], body: &[u8], known: &mut Known, sink: &mut Sink<'_>) -> Option<()> {
         let mut fields = Bytes::new(body, Order::Little);
-        match header.first()? {
-            &MESSAGE => {
+        match *header.first()? {
+            MESSAGE => {
                 sink.of_topics.found += 1;
                 let channel = fields.u16()?;
                 fields.u32()?; // A running number.
@@ -114,13 +114,13 @@ impl Form for Mcap {
                     sink.message(topic, recorded_ns, &self.unpacked);
                 }
             }
-            &SCHEMA => {
+            SCHEMA => {
                 let id = fields.u16()?;
                 let (name, _encoding) = (fields.text()?, fields.text()?);
                 let text = fields.text()?;
                 self.schemas.insert(id, (name, (!text.is_empty()).then_some(text)));
             }
-            &CHANNEL => {
+            CHANNEL => {
                 let (id, schema) = (fields.u16()?, fields.u16()?);
                 let (topic, encoding) = (fields.text()?, fields.text()?);
                 let encoding = match &*encoding {
@@ -134,11 +134,11 @@ impl Form for Mcap {
                 };
                 known.topics.entry(id.into()).or_insert_with(|| sink.topic(&topic, name, text, encoding));
             }
-            &CHUNK_INDEX => {
+            CHUNK_INDEX => {
                 fields.take(16)?; // When its first and its last message were recorded.
                 known.chunks.push(fields.u64()?);
             }
-            &STATISTICS => known.counted = fields.u64()?,
+            STATISTICS => known.counted = fields.u64()?,
             _ => {}
         }
         Some(())

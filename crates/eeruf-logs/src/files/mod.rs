@@ -151,7 +151,7 @@ fn read_in_order(input: impl Read, name: &Path, sink: &mut Sink<'_>) -> Result<(
 
 /// Reads a bag by way of a temporary file.
 fn read_copy(opened: &mut Opened<'_>, name: &Path, sink: &mut Sink<'_>) -> Result<(), FileError> {
-    let copy = opened.to_file().map_err(|error| FileError::reading(name, &error))?;
+    let copy = opened.copied().map_err(|error| FileError::reading(name, &error))?;
     if opened.form == Form::Sqlite {
         sink.has(Parts::Topics);
         return rosbag2::read_sqlite(copy.path(), name, false, sink);

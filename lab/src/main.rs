@@ -43,7 +43,7 @@ enum Command {
     NarrowPanels,
     /// Table of shortest periods
     Periods,
-    /// What Python is held against
+    /// Paths and times that Python is held against
     #[command(override_usage = "cargo lab rust-side paths|times")]
     RustSide { words: Vec<String> },
     /// Shortest periods and their cost

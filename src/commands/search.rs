@@ -99,7 +99,7 @@ fn searched(args: &Args, spec: &WaitSpec) -> Result<(Answer, String), SearchErro
     Ok((answer, text))
 }
 
-/// What a search found: whether there is a table, whether no answer is missing, and both forms of the output.
+/// Result of a search: whether there is a table, whether no answer is missing, and both forms of the output.
 struct Answered {
     any: bool,
     proven: bool,

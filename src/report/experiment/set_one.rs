@@ -60,8 +60,8 @@ const BELIEF: [Column<Figures>; 7] = [
 pub(crate) fn describe(found: &SetOne, best: &ShortestPeriod) -> String {
     let MultiEcho { consecutive, t_delta } = MultiEcho::TUNED;
     let mut text = format!(
-        "Set I: {} alcoves from {} on, {} sensors, {} periods of {} each, physics: {}{}; 10 % / median / 90 % of the alcoves, or the \
-         median alone.\n\
+        "Set I: {} alcoves from {} on, {} sensors, {} periods of {} each, physics: {}{}; 10 % / median / 90 % \
+         of the alcoves, or the median alone.\n\
          Starved: sensors with under 5 % of their readings accepted, on average; in part: those of them that read\n\
          right in one phase and not in another; blind: those that were right under 5 % of the times they\n\
          fired.\n\

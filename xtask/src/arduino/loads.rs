@@ -146,8 +146,8 @@ impl Load {
     }
 }
 
-/// The rooms by their names: the alcove; separate walls at 0.4 to 3.4 m, spaced by the golden section so that no two are
-/// alike; and the alcove 1.6 times as large, where a module's sound is still heard after 10 ms, for eight modules.
+/// The rooms by their names: the alcove; separate walls at 0.4 to 3.4 m, spaced by the golden section so that no two
+/// are alike; and the alcove 1.6 times as large, where a module's sound is still heard after 10 ms, for eight modules.
 fn rooms() -> Result<[(&'static str, Room); 3]> {
     let alcove = fs::read_to_string(world::KEPT)?;
     let own = (0..8).map(|module| Some(2_300 + module * 618 % 1000 * 175 / 10));

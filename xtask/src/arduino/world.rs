@@ -74,7 +74,7 @@ impl Room {
         Self::new(file, &us.into_iter().enumerate().filter_map(path).collect::<String>())
     }
 
-    /// Makes the scene of the examples around its eight modules, of which a ring may have fewer, or around more of them.
+    /// Makes the scene of the examples around its eight modules, of which a ring may have fewer, or around more.
     pub(super) fn alcove(file: impl Into<PathBuf>, modules: usize) -> Result<Self> {
         let paths = if modules > 8 { echo_times(modules) } else { Ok(fs::read_to_string(KEPT)?) };
         Self::new(file, &paths?)

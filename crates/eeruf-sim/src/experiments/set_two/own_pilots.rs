@@ -1,5 +1,5 @@
-//! The pilots that a search found, one for each method, as `cargo lab tune` of commit 554cf2c9 printed them: change none
-//! by hand.
+//! The pilots that a search found, one for each method, as `cargo lab tune` of commit 554cf2c9 printed them: change
+//! none by hand.
 //!
 //! 48 pilots on courses 0 to 7,
 //! the best 12 on courses 8 to 31,

@@ -50,9 +50,6 @@ macro_rules! methods {
         $( $( mod $file; )? )+
 
         /// A way to fire a ring and to judge its readings.
-        ///
-        /// The first six and [`Median`](Self::Median) come from practice, the others are the paper's and its
-        /// extensions.
         #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
         #[non_exhaustive]
         pub enum Method {

@@ -116,13 +116,9 @@ fn a_window_beyond_the_schedules_own_refire_time_is_refused() {
 #[test]
 fn an_unknown_method_is_answered_with_the_list_of_all() {
     let error = "erruf".parse::<Method>().unwrap_err().to_string();
-    assert!(
-        error.starts_with(
-            "no method `erruf`; expected simultaneous, sequential, sequential_votes, sequential_median, far_groups"
-        ),
-        "{error}"
-    );
+    assert!(error.starts_with("no method `erruf`; expected simultaneous, sequential"), "{error}");
     for method in Method::ALL {
+        assert!(error.contains(method.as_str()), "{error}");
         assert_eq!(method.as_str().parse(), Ok(method));
     }
 }

@@ -272,9 +272,7 @@ def test_a_ring_file_makes_the_same_robot_in_code_as_in_a_scene(tmp_path: Path) 
     ring = (rings / "car-12.toml").read_text()
     (tmp_path / "car.toml").write_text(ring)
     scene = tmp_path / "scene.toml"
-    scene.write_text(
-        f"[[robot]]\npose = {{ x_m = 0, y_m = 0 }}\nring = 'car.toml'\nblanking_us = 900\n"
-    )
+    scene.write_text("[[robot]]\npose = { x_m = 0, y_m = 0 }\nring = 'car.toml'\nblanking_us = 900\n")
     read = sim.Scene.read_toml(scene).robots[0]
     assert read == made
     assert (made.sensors, made.neighbours, made.module) == (12, 3, "jsn-sr04t")

@@ -6,6 +6,7 @@ import subprocess
 import sys
 import time
 
+import eeruf
 import pytest
 
 # Each would take hours, and reports that it runs from within, or just before if it has no progress to report.
@@ -74,3 +75,13 @@ def test_ctrl_c_ends_long_work(name: str) -> None:
     assert "completed" not in out
     assert "KeyboardInterrupt" in err.splitlines()[-1], err
     assert child.returncode != 0
+
+
+class Interrupted:
+    def __array__(self, dtype: object = None, copy: object = None) -> object:
+        raise KeyboardInterrupt
+
+
+def test_ctrl_c_while_an_argument_is_converted_is_no_wrong_argument() -> None:
+    with pytest.raises(KeyboardInterrupt):
+        eeruf.EchoFilter(1, 500).push_many(Interrupted())  # type: ignore[arg-type]

@@ -5,6 +5,7 @@ use std::ops::RangeInclusive;
 
 use eeruf_core::Micros;
 use numpy::{PyReadonlyArray2, prelude::*};
+use pyo3::exceptions::PyException;
 use pyo3::prelude::*;
 
 use crate::errors::{EerufError, warn};
@@ -12,6 +13,11 @@ use crate::errors::{EerufError, warn};
 /// The error `NAME = VALUE; expected EXPECTED`.
 pub(crate) fn wrong(name: &str, value: impl Display, expected: impl Display) -> PyErr {
     EerufError::new_err(format!("{name} = {value}; expected {expected}"))
+}
+
+/// The error for an argument that NumPy refused; Ctrl-C while NumPy was at work stays what it is.
+pub(crate) fn refused_by_numpy(error: PyErr, py: Python<'_>, wrong: impl FnOnce() -> PyErr) -> PyErr {
+    if error.is_instance_of::<PyException>(py) { wrong() } else { error }
 }
 
 pub(crate) fn shown(value: &Bound<'_, PyAny>) -> String {
@@ -189,7 +195,8 @@ pub(crate) fn matrix<'py>(
     columns: usize,
 ) -> PyResult<PyReadonlyArray2<'py, f64>> {
     let expected = || format!("an array of floats of shape (n, {columns})");
-    let array = native(value, Some("float64")).map_err(|_| wrong(name, shown(value), expected()))?;
+    let refused = |error| refused_by_numpy(error, value.py(), || wrong(name, shown(value), expected()));
+    let array = native(value, Some("float64")).map_err(refused)?;
     let empty = array.getattr("size")?.extract::<usize>()? == 0;
     let array = if empty { array.call_method1("reshape", ((0, columns),))? } else { array };
     match array.extract::<PyReadonlyArray2<'py, f64>>() {
@@ -219,7 +226,7 @@ pub(crate) fn points(name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<eeruf
 
 fn at_least_2d<'py>(name: &str, value: &Bound<'py, PyAny>, expected: &str) -> PyResult<Bound<'py, PyAny>> {
     let array = value.py().import("numpy")?.call_method1("atleast_2d", (value,));
-    array.map_err(|_| wrong(name, shown(value), expected))
+    array.map_err(|error| refused_by_numpy(error, value.py(), || wrong(name, shown(value), expected)))
 }
 
 fn in_plane(rows: &PyReadonlyArray2<'_, f64>) -> Vec<eeruf_sim::Point> {

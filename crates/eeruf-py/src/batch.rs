@@ -8,7 +8,7 @@ use pyo3::{PyTraverseError, PyVisit, exceptions::PyRuntimeError, prelude::*};
 use rayon::prelude::*;
 
 use crate::{
-    arguments::{items, matrix, native, number, shown, whole, whole_or, wrong},
+    arguments::{items, matrix, native, number, refused_by_numpy, shown, whole, whole_or, wrong},
     batch_state::{BatchState, Known},
     errors::{EerufError, Raise},
     exclusive::Exclusive,
@@ -147,7 +147,7 @@ impl Batch {
     fn for_each(&self, name: &str, value: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
         let expected = format!("a number, or one for each of the {} worlds, from -50 to 50", self.size);
         let refused = || wrong(name, shown(value), &expected);
-        let array = native(value, Some("float64")).map_err(|_| refused())?;
+        let array = native(value, Some("float64")).map_err(|error| refused_by_numpy(error, value.py(), refused))?;
         let numpy = value.py().import("numpy")?;
         let array = numpy.call_method1("broadcast_to", (array, (self.size,))).map_err(|_| refused())?;
         let array = native(&array, None)?;

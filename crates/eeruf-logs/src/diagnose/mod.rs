@@ -153,7 +153,7 @@ pub fn diagnose_while(log: &FiringLog, settings: &Settings, keep_going: KeepGoin
     let mut named = vec![None; log.firings.len()];
     let mut fits_none = vec![false; log.firings.len()];
     let moved = log.drives() || timeline.moved();
-    for receiver in (0..log.sensors() as u8).filter(|_| !moved) {
+    for receiver in (0..log.sensors() as u8).filter(|_| !moved).take_while(|_| keep_going()) {
         let found = paths_to(receiver, &timeline, settings, keep_going);
         name_senders(receiver, &found, &timeline, settings, &mut named, &mut fits_none);
         paths.extend(found);

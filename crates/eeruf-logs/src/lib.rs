@@ -56,9 +56,7 @@ use std::path::Path;
 use eeruf_files::FileError;
 use sink::Sink;
 
-pub use diagnose::{
-    Diagnosis, FoundPath, Hearing, KeepGoing, Named, Settings, Share, Timing, diagnose, diagnose_while, timing,
-};
+pub use diagnose::{Diagnosis, Hearing, Named, Settings, Share, Timing, diagnose, diagnose_while, timing};
 pub use doctor::{Doctor, Examination, LogVerdict, Suspect};
 #[cfg(feature = "files")]
 pub use files::{
@@ -66,6 +64,7 @@ pub use files::{
 };
 pub use firings::{Firing, FiringLog};
 pub use options::{FieldChoice, Options, RangeUnit, Table, TimeUnit};
+pub use paths::{FoundPath, KeepGoing};
 pub use pattern::{FiringPattern, Pattern};
 pub use reading::{Echo, LogReading, Sensor};
 pub use replay::{FlowSettings, Replayed, replay_flow};

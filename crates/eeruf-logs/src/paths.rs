@@ -4,8 +4,36 @@
 use std::cmp::Reverse;
 use std::collections::HashMap;
 
-use crate::diagnose::{FoundPath, KeepGoing};
 use crate::statistics::median;
+
+/// A function that is called from time to time; if it returns `false`, work ends with the results so far.
+pub type KeepGoing<'a> = &'a dyn Fn() -> bool;
+
+/// A path found in a log.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FoundPath {
+    /// The sensor that sends, from 0.
+    pub sender: u8,
+    /// The sensor that hears the sound, from 0.
+    pub receiver: u8,
+    /// Travel time of the sound, in microseconds.
+    pub travel_us: f64,
+    /// Standard error of the travel time.
+    pub travel_error_us: f64,
+    /// Scatter of single readings, rms, in microseconds.
+    pub scatter_us: f64,
+    /// Number of different offsets between the two firings that support the path, and of those at which it could be
+    /// heard.
+    pub offsets: (u32, u32),
+    /// Number of paths with as much support that are expected by accident in the whole log.
+    pub accidents: f64,
+    /// Number of readings along the path.
+    pub readings: u32,
+    /// The share of readings that heard the path, among those in which nothing earlier hid it.
+    pub heard: f64,
+    /// The periods of the first and the last reading that came along it.
+    pub periods: (u32, u32),
+}
 
 /// Support of a path.
 pub(crate) struct Support {

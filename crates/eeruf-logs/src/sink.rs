@@ -68,15 +68,19 @@ impl Report {
 /// Largest number of listed damages; further ones are only counted.
 const LISTED: usize = 100;
 
+/// A receiver of messages, each with its topic.
+#[cfg(feature = "files")]
+pub(crate) type Messages<'a> = &'a mut dyn FnMut(&str, &[u8]);
+
 /// Knowledge of the topics of a log.
 #[cfg(feature = "files")]
 #[derive(Default)]
-pub(crate) struct Topics {
+pub(crate) struct Topics<'a> {
     /// Number of messages of any type, readable or not.
     pub(crate) found: u64,
     pub(crate) buffer: Vec<LogReading>,
-    /// The firings of a ring, if they are asked for.
-    pub(crate) firings: Option<crate::files::firing_messages::FiringMessages>,
+    /// The receiver of a ring's firings, if they are asked for.
+    pub(crate) firings: Option<Messages<'a>>,
     /// Topics with readings.
     pub(crate) names: std::collections::HashSet<String>,
     /// Topics about which a warning was given.
@@ -90,7 +94,7 @@ pub(crate) struct Sink<'a> {
     more_damage: u64,
     pub(crate) options: &'a Options,
     #[cfg(feature = "files")]
-    pub(crate) of_topics: Topics,
+    pub(crate) of_topics: Topics<'a>,
     pub(crate) stamps: Stamps,
     /// True if all readings of a row or message share its time.
     pub(crate) one_time_a_row: bool,

@@ -12,9 +12,8 @@
 
 use std::collections::HashMap;
 
-use crate::diagnose::{FoundPath, KeepGoing};
 use crate::firings::{Firing, FiringLog};
-use crate::paths::{Evidence, Support, paths};
+use crate::paths::{Evidence, FoundPath, KeepGoing, Support, paths};
 use crate::statistics::{groups, ln_at_least};
 
 /// Settings of the search for paths in a survey.

@@ -25,6 +25,7 @@ mod timeline;
 mod timing;
 
 use crate::firings::FiringLog;
+use crate::paths::{FoundPath, KeepGoing};
 use crate::symptom::Finding;
 use faults::faults;
 pub use naming::Named;
@@ -56,9 +57,6 @@ impl Default for Settings {
     }
 }
 
-/// A function that is called from time to time; if it returns `false`, work ends with the results so far.
-pub type KeepGoing<'a> = &'a dyn Fn() -> bool;
-
 impl Settings {
     /// The usual settings, with a tolerance of four times the readings' scatter, at least 75 us.
     pub fn of(log: &FiringLog) -> Self {
@@ -82,32 +80,6 @@ impl Settings {
         let tolerance_us = if is_known { (4.0 * scatter_us) as u32 } else { usual.tolerance_us };
         Self { tolerance_us, ..usual }
     }
-}
-
-/// A path found in a log.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FoundPath {
-    /// The sensor that sends, from 0.
-    pub sender: u8,
-    /// The sensor that hears the sound, from 0.
-    pub receiver: u8,
-    /// Travel time of the sound, in microseconds.
-    pub travel_us: f64,
-    /// Standard error of the travel time.
-    pub travel_error_us: f64,
-    /// Scatter of single readings, rms, in microseconds.
-    pub scatter_us: f64,
-    /// Number of different offsets between the two firings that support the path, and of those at which it could be
-    /// heard.
-    pub offsets: (u32, u32),
-    /// Number of paths with as much support that are expected by accident in the whole log.
-    pub accidents: f64,
-    /// Number of readings along the path.
-    pub readings: u32,
-    /// The share of readings that heard the path, among those in which nothing earlier hid it.
-    pub heard: f64,
-    /// The periods of the first and the last reading that came along it.
-    pub periods: (u32, u32),
 }
 
 /// Findings about a ring from its log.

@@ -1,9 +1,9 @@
 //! Evidence for the paths to one receiver in a log of firings.
 
+use super::Settings;
 use super::share::Share;
 use super::timeline::{Heard, Timeline};
-use super::{FoundPath, KeepGoing, Settings};
-use crate::paths::{Evidence, Support, paths};
+use crate::paths::{Evidence, FoundPath, KeepGoing, Support, paths};
 use crate::statistics::{groups, ln_at_least};
 
 /// Half width of the interval of echo times for the density of accidental readings, in microseconds.

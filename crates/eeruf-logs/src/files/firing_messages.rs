@@ -18,7 +18,7 @@ use eeruf_files::FileError;
 const FIELDS: [&str; 9] = ["sensor", "fired_us", "period", "phase", "has_echo", "t_echo_us", "g", "clock", "reading"];
 
 /// The firings of a file so far.
-pub(crate) struct FiringMessages {
+struct FiringMessages {
     decoder: Option<Decoder>,
     /// The topics that have messages.
     topics: BTreeSet<String>,
@@ -31,20 +31,19 @@ pub(crate) struct FiringMessages {
 pub(crate) fn read(input: &mut Opened<'_>, file: &Path) -> Result<FiringLog, FileError> {
     let copy = input.copied().map_err(|error| FileError::reading(file, &error))?;
     let (options, mut each) = (Options::default(), |_: &_, _: &_| {});
-    let mut sink = Sink::new(&options, &mut each);
     let decoder = Schema::parse(&definition(FIRING)).and_then(|schema| schema.decoder(&FIELDS));
     let (topics, firings) = (BTreeSet::new(), vec![]);
-    sink.of_topics.firings = Some(FiringMessages { decoder, topics, clock: String::new(), firings, has_other: false });
+    let mut found = FiringMessages { decoder, topics, clock: String::new(), firings, has_other: false };
+    let mut message = |topic: &str, data: &[u8]| found.message(topic, data);
+    let mut sink = Sink::new(&options, &mut each);
+    sink.of_topics.firings = Some(&mut message);
     bag::read(Mcap::new(false), &mut copy.as_file(), file, &mut sink)?;
     let damage = sink.report.damage.first().map(|damage| damage.message().to_owned());
-    match sink.of_topics.firings.take() {
-        Some(found) => found.log(damage, file),
-        None => Ok(FiringLog::default()),
-    }
+    found.log(damage, file)
 }
 
 impl FiringMessages {
-    pub(crate) fn message(&mut self, topic: &str, data: &[u8]) {
+    fn message(&mut self, topic: &str, data: &[u8]) {
         let decoded = self.decoder.as_ref().and_then(|decoder| decoder.decode(Encoding::Cdr, data, 1));
         let decoded = decoded.filter(|found| found.number(0) < f64::from(MAX_SENSORS));
         self.has_other |= decoded.is_none();

@@ -74,7 +74,7 @@ impl Sink<'_> {
         if topic.has_firings
             && let Some(firings) = &mut self.of_topics.firings
         {
-            return firings.message(&topic.name, message);
+            return firings(&topic.name, message);
         }
         let Some(decoding) = topic.decoding.clone() else { return };
         let (encoding, kind) = &*decoding;

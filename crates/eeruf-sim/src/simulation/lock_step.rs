@@ -1,4 +1,4 @@
-//! [`LockStep`]: the world around a ring that runs elsewhere, on a real or an emulated microcontroller.
+//! [`LockStep`]: the world around a ring that runs elsewhere, in the program or on a microcontroller.
 //!
 //! In a normal simulation, the simulator calls the ring. Here the ring calls the simulator: it reports each firing, and
 //! receives the next echo of every sensor as known so far. A later firing may change it, if its sound arrives first.
